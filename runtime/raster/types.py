@@ -1,0 +1,86 @@
+"""What goes into the rasteriser and what comes out.
+
+Everything that moves is one skinned mesh over one palette of matrices: a person contributes as
+many palette entries as joints, a movable prop one. A *moment* is one palette, a *view* is one
+camera looking at one moment; a launch draws many views of many moments.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..mesh import Mesh
+from ..world import Light
+
+
+@dataclass(frozen=True)
+class Style:
+    """Frozen look of the pictures; kernels are compiled per style.
+
+    outline: ink lines on silhouettes, creases and part borders; tones: number of light steps
+    (0 for smooth); quiet: 0..1, how far static geometry is drawn towards pale tints
+    """
+
+    name: str = "board"
+    outline: bool = True
+    tones: int = 3
+    quiet: float = 0.45
+    shadows: bool = True
+    occlusion: bool = True
+
+
+@dataclass(frozen=True, eq=False)
+class RenderScene:
+    """Everything drawable of one scene; loaded once.
+
+    static: world coordinates, never moves; static_object: int32 [F]; static_wall: int32 [F] or -1
+    skinned: bind-pose mesh of everything that moves; skinned_object: int32 [F], object ids that
+        continue after the static ones; joints: int32 [V, 4] palette indices; weights: float32 [V, 4]
+    wall_count: number of wild walls
+    """
+
+    static: Mesh
+    static_object: NDArray[np.int32]
+    static_wall: NDArray[np.int32]
+    skinned: Mesh
+    skinned_object: NDArray[np.int32]
+    joints: NDArray[np.int32]
+    weights: NDArray[np.float32]
+    wall_count: int
+    light: Light
+
+
+@dataclass(frozen=True, eq=False)
+class Camera:
+    """Poses of N cameras, one per view.
+
+    position: float32 [N, 3], metres
+    axes: float32 [N, 3, 3], rows are the camera's right, up and forward in the world
+    focal: float32 [N], mm
+    sensor: (width, height) of the sensor in mm; the picture fills it exactly
+    """
+
+    position: NDArray[np.float32]
+    axes: NDArray[np.float32]
+    focal: NDArray[np.float32]
+    sensor: tuple[float, float]
+
+
+@dataclass(frozen=True, eq=False)
+class Views:
+    """N views: moment int32 [N] indexes the palettes; hidden bool [N, W], walls not drawn in the view."""
+
+    camera: Camera
+    moment: NDArray[np.int32]
+    hidden: NDArray[np.bool_]
+
+
+@dataclass(frozen=True, eq=False)
+class Frames:
+    """color: uint8 [N, H, W, 3] sRGB; ids: int32 [N, H, W] object id or -1, None unless asked for."""
+
+    color: NDArray[np.uint8]
+    ids: NDArray[np.int32] | None

@@ -1,0 +1,158 @@
+"""The checked storyboard: every name resolved, every default filled in, nothing left to look up.
+
+Later stages read only this. Angles are radians, lengths metres, focal lengths mm, durations
+seconds (exact fractions of frames are made later, from ``fps``).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TypeAlias
+
+from .source import Span
+
+#: An argument of a prop or cast call, evaluated: a number in metres / radians / seconds, or a word.
+Argument: TypeAlias = float | str
+
+MOVEMENTS = ("static", "follow", "push", "pull", "zoom-in", "zoom-out", "tilt-up", "tilt-down",
+             "pan-left", "pan-right", "dolly-left", "dolly-right", "pedestal-up", "pedestal-down",
+             "arc-left", "arc-right")  # fmt: skip
+#: The nine families of the paper; a family stands for all its directions.
+MOVEMENT_FAMILIES: dict[str, tuple[str, ...]] = {
+    "static": ("static",),
+    "follow": ("follow",),
+    "push/pull": ("push", "pull"),
+    "zoom": ("zoom-in", "zoom-out"),
+    "tilt": ("tilt-up", "tilt-down"),
+    "pan": ("pan-left", "pan-right"),
+    "dolly": ("dolly-left", "dolly-right"),
+    "pedestal": ("pedestal-up", "pedestal-down"),
+    "arc": ("arc-left", "arc-right"),
+}
+SCALES = ("close-up", "medium", "full", "wide")
+ANGLES = ("eye-level", "high-angle", "low-angle")
+
+
+@dataclass(frozen=True)
+class Character:
+    """A member of the cast as the storyboard dresses them; ``arguments`` override the cast's defaults."""
+
+    name: str
+    cast: str
+    arguments: tuple[tuple[str, Argument], ...]
+    span: Span = field(compare=False, repr=False)
+
+
+@dataclass(frozen=True)
+class Target:
+    """What a name resolved to.
+
+    kind: ``object`` (path of an object, from the set's root), ``spot`` (an object's or room's path and,
+        as last part, one of its spots), ``room`` or ``character`` (path is the character's name alone)
+    """
+
+    kind: str
+    path: tuple[str, ...]
+    written: str
+    span: Span = field(compare=False, repr=False)
+
+
+@dataclass(frozen=True)
+class Placement:
+    """``anna at door facing window``: where a character is when the scene opens."""
+
+    character: str
+    at: Target
+    facing: Target | None
+    posture: str  # standing | sitting
+    span: Span = field(compare=False, repr=False)
+
+
+@dataclass(frozen=True)
+class Scene:
+    """``scene kitchen = apartment.kitchen at dusk``; ``room`` is the path inside the set, () for all of it."""
+
+    name: str
+    set: str
+    room: tuple[str, ...]
+    time: str  # dawn | day | dusk | night
+    placements: tuple[Placement, ...]
+    span: Span = field(compare=False, repr=False)
+
+
+@dataclass(frozen=True)
+class Beat:
+    """One ``(char do sth)``; several joined by ``+`` run at once."""
+
+    character: str
+    action: str
+    target: Target | None
+    second: Target | None
+    span: Span = field(compare=False, repr=False)
+
+
+@dataclass(frozen=True)
+class Shot:
+    """One camera on one story line, or on the scene alone.
+
+    id: stable when lines are inserted or removed elsewhere
+    movements, scales, angles: what may be proposed, canonical words; one entry where it was said
+    lens: focal length range in mm; ease: λ choices; duration: seconds or None for the action's own
+    focus: the character or object the camera is about; None only where nobody is in the scene
+    speed: action speed factor (1 as recorded)
+    """
+
+    id: str
+    line: int  # 1-based, for people
+    movements: tuple[str, ...]
+    scales: tuple[str, ...]
+    angles: tuple[str, ...]
+    lens: tuple[float, float]
+    ease: tuple[float, ...]
+    duration: float | None
+    roll: float
+    focus: Target | None
+    say: str | None
+    note: str | None
+    proposals: int
+    takes: int
+    speed: float
+    style: str
+    span: Span = field(compare=False, repr=False)
+
+
+@dataclass(frozen=True)
+class Transition:
+    """How the next line joins the last: cut, dissolve, fade-out, fade-in or wipe; seconds."""
+
+    kind: str
+    duration: float
+
+
+@dataclass(frozen=True)
+class StoryLine:
+    """What happens, and the cameras on it. No beats: an establishing shot of the scene."""
+
+    scene: int
+    beats: tuple[Beat, ...]
+    shots: tuple[Shot, ...]
+    transition: Transition
+    span: Span = field(compare=False, repr=False)
+
+
+@dataclass(frozen=True)
+class Storyboard:
+    """A whole checked script. ``fps`` is (numerator, denominator); ``size`` is even pixels."""
+
+    title: str
+    fps: tuple[int, int]
+    size: tuple[int, int]
+    seed: int
+    rig: str  # cinema | paper
+    style: str
+    characters: tuple[Character, ...]
+    scenes: tuple[Scene, ...]
+    lines: tuple[StoryLine, ...]
+    source_name: str
+
+

@@ -3,6 +3,13 @@
 Joints are listed parents first. In the bind pose the person stands on Z = 0 facing +X with +Y
 to their left, arms 45° out (an A), and every joint frame is aligned with the model axes: a local
 rotation turns about the model's X (forward), Y (left) and Z (up).
+
+Signs worth knowing, for the left side (mirror for the right): thumbs point forward and palms face the
+thighs, so fingers curl by a negative turn about X; the jaw opens by a positive turn about Y; a positive
+turn of an eye about Z looks left, about Y looks down; a lid closes by a positive turn about Y. Brows and
+mouth corners are moved by small turns of their joints, which sit deep in the head: positive about Y
+lowers, negative raises. ``index`` hangs on ``fingers`` and curls with it; turned by the inverse of
+``fingers`` it points. ``indextip`` is its second half, as ``fingertips`` is of the other three.
 """
 
 from __future__ import annotations
@@ -31,6 +38,8 @@ _SIDE = (
     ("hand", "forearm"),
     ("fingers", "hand"),
     ("fingertips", "fingers"),
+    ("index", "fingers"),
+    ("indextip", "index"),
     ("thumb", "hand"),
     ("thigh", "hips"),
     ("shin", "thigh"),

@@ -1,0 +1,270 @@
+"""What motion takes and gives: actors, tasks, clips and the performed scene.
+
+Metres, radians, seconds, Z up, heading 0 is +X and counter-clockwise. A clip is data alone: the
+engine knows mechanisms (keys, gait, reach, take, release, tilt, seat, gaze), never names of actions.
+Hands are ``l`` and ``r``. Times inside a clip are fractions of its own part of the shot (0..1), after
+any walking, standing up or picking up that has to come first.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from runtime.body.skeleton import Skeleton
+
+Point = tuple[float, float, float]
+
+#: Where a reach may lead, apart from ``target`` and ``second``: places on one's own body, and the
+#: point between two people where hands meet.
+BODY_PLACES = (
+    "mouth",
+    "ear",
+    "chin",
+    "chest",
+    "hip",
+    "head",
+    "heart",
+    "belly",
+    "eyes",
+    "elbow",
+    "lap",
+    "front",
+)
+REACH_PLACES = ("target", "second", "meet", *BODY_PLACES)
+#: Where eyes may rest: ``partner`` is the other person of the action, ``held`` the thing in the hand.
+GAZE_PLACES = ("target", "second", "partner", "held", "ahead", "down", "up", "aside", "around")
+#: Which hand an entry means; resolved when the action is performed.
+HANDS = ("left", "right", "near", "other", "holding", "free")
+
+
+@dataclass(frozen=True)
+class ActorState:
+    """Where and how a person is between two shots.
+
+    position: point on the floor below the hips; heading: radians
+    posture: ``standing`` or ``sitting``; seat: middle of the seat's surface while sitting
+    held: (hand, object id) for each thing in a hand
+    """
+
+    position: Point
+    heading: float
+    posture: str = "standing"
+    seat: Point | None = None
+    held: tuple[tuple[str, int], ...] = ()
+
+
+@dataclass(frozen=True, eq=False)
+class Actor:
+    skeleton: Skeleton
+    state: ActorState
+
+
+@dataclass(frozen=True)
+class TargetPoint:
+    """What an action is aimed at, in the world.
+
+    position: contact point: a grip, the top a thing is put on, a person's hand height
+    gaze: where one looks when looking at it; object: its id where it is a movable thing
+    facing: heading a person takes to use it; seat: middle of the seat's surface, if it can be sat on
+    character: the person's name, if it is one
+    """
+
+    position: Point
+    gaze: Point
+    object: int | None = None
+    facing: float | None = None
+    seat: Point | None = None
+    character: str | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class PropState:
+    """A movable thing: float64 [4, 4] world_from_object, its grip in object coordinates, and who holds it."""
+
+    world_from_object: NDArray[np.float64]
+    grip: Point
+    holder: tuple[str, str | None] | None = None
+
+
+# --- clips --------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class Track:
+    """Keys of one channel (see :mod:`runtime.motion.channels`): times 0..1 rising, values in radians,
+    metres or shares. Interpolated by minimum-jerk eases, so the value rests on each key."""
+
+    channel: str
+    times: tuple[float, ...]
+    values: tuple[float, ...]
+
+
+@dataclass(frozen=True)
+class Beat:
+    """An oscillation on top of a channel: ``count`` swings of ``amplitude`` between start and end (0..1)."""
+
+    channel: str
+    amplitude: float
+    count: float
+    start: float
+    end: float
+    phase: float = 0.0
+
+
+@dataclass(frozen=True)
+class Reach:
+    """A hand goes to a place: leaves at ``start``, is there from ``arrive`` to ``leave``, is back at ``end``.
+
+    hand: one of :data:`HANDS`; to: one of :data:`REACH_PLACES`
+    offset: metres ahead of, to the outside of and above the place, seen from the person
+    """
+
+    hand: str
+    to: str
+    start: float
+    arrive: float
+    leave: float
+    end: float
+    offset: Point = (0.0, 0.0, 0.0)
+
+
+@dataclass(frozen=True)
+class Grasp:
+    """At ``time`` the hand takes (``take``), lets go of (``put``) or hands over (``pass``) a thing."""
+
+    kind: str
+    hand: str
+    time: float
+
+
+@dataclass(frozen=True)
+class Tilt:
+    """The held thing tips forward by ``angle``: begins at ``start``, is there ``arrive``..``leave``, back at ``end``.
+
+    to: ``target``: over the target; ``mouth``: towards oneself
+    """
+
+    hand: str
+    angle: float
+    start: float
+    arrive: float
+    leave: float
+    end: float
+    to: str = "target"
+
+
+@dataclass(frozen=True)
+class Gaze:
+    """Eyes, then head, then body turn to a place between start and end. share: how far the head follows."""
+
+    to: str
+    start: float
+    end: float
+    share: float = 0.7
+
+
+@dataclass(frozen=True)
+class Talk:
+    """The jaw moves in syllables between start and end, with small nods and brows on the stresses."""
+
+    start: float
+    end: float
+    loudness: float = 1.0
+
+
+@dataclass(frozen=True)
+class Timeline:
+    """Everything one person does in a clip."""
+
+    tracks: tuple[Track, ...] = ()
+    beats: tuple[Beat, ...] = ()
+    reaches: tuple[Reach, ...] = ()
+    grasps: tuple[Grasp, ...] = ()
+    tilts: tuple[Tilt, ...] = ()
+    gazes: tuple[Gaze, ...] = ()
+    talks: tuple[Talk, ...] = ()
+
+
+@dataclass(frozen=True)
+class Variant:
+    """One way to do an action.
+
+    duration: seconds of the clip's own part; tempo and amplitude are already worked in
+    stride: factor on the step length and cadence of walking there: (length, cadence)
+    partner: what the other person of the action does meanwhile (empty: goes on idling)
+    """
+
+    name: str
+    duration: float
+    timeline: Timeline
+    partner: Timeline = field(default_factory=Timeline)
+    stride: tuple[float, float] = (1.0, 1.0)
+
+
+@dataclass(frozen=True)
+class ActionClip:
+    """An action ready to be performed.
+
+    travel: ``none``, ``walk`` or ``run``: how one gets there when a path is given
+    seat: ``down`` sits on the target's seat, ``up`` stands up, ``keep`` leaves the posture as it is
+    needs: ``target``/``second``/``any``: that thing has to be in a hand first; ``none``
+    faces: what the body turns to before it begins: ``target``, ``second``, ``away`` or ``none``
+    lead: whether the clip also plays while walking there (a talk on the way) rather than after it
+    """
+
+    name: str
+    variants: tuple[Variant, ...]
+    travel: str = "walk"
+    seat: str = "keep"
+    needs: str = "none"
+    faces: str = "none"
+    turn: float = 0.0
+    lead: bool = False
+
+    def variant(self, name: str) -> Variant:
+        """The variant of that name, or the first."""
+        return next((v for v in self.variants if v.name == name), self.variants[0])
+
+
+# --- performing ---------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, eq=False)
+class Task:
+    """What one person is asked to do.
+
+    variant: name of one of the clip's; path: float64 [K, 2] floor points from where the person is, or None
+    arrive_heading: heading to end the path with; None: as the path ends, or facing the target
+    speed: 1 as designed, 1.5 half as fast again; duration: seconds of the whole shot to fill, or None
+    """
+
+    clip: ActionClip
+    variant: str = ""
+    path: NDArray[np.float64] | None = None
+    arrive_heading: float | None = None
+    target: TargetPoint | None = None
+    second: TargetPoint | None = None
+    speed: float = 1.0
+    duration: float | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class SceneMotion:
+    """Everybody over one shot.
+
+    frames: T; world_from_joint: per actor float32 [T, J, 4, 4]
+    position: per actor float64 [T, 3], floor point below the hips; heading: per actor float64 [T]
+    props: by object id, float32 [T, 4, 4] world_from_object
+    end_actors, end_props: the state the next shot begins with
+    """
+
+    frames: int
+    world_from_joint: dict[str, NDArray[np.float32]]
+    position: dict[str, NDArray[np.float64]]
+    heading: dict[str, NDArray[np.float64]]
+    props: dict[int, NDArray[np.float32]]
+    end_actors: dict[str, ActorState]
+    end_props: dict[int, PropState]

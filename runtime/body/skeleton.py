@@ -62,6 +62,21 @@ def _parents() -> tuple[int, ...]:
 #: Index of each joint's parent, -1 for the root.
 PARENTS: tuple[int, ...] = _parents()
 
+#: Helpers of the skin that nobody animates, and the joint each follows (see :func:`skinning_matrices`).
+HELPERS: tuple[tuple[str, str], ...] = tuple(
+    (f"{kind}_{s}", f"{joint}_{s}")
+    for s in "lr"
+    for kind, joint in (
+        ("half-shoulder", "upperarm"),
+        ("half-elbow", "forearm"),
+        ("twist", "hand"),
+        ("half-hip", "thigh"),
+        ("half-knee", "shin"),
+    )
+)
+#: Everything a vertex of a body may hang on: the joints, then the helpers.
+PALETTE: tuple[str, ...] = JOINTS + tuple(name for name, _ in HELPERS)
+
 
 @dataclass(frozen=True, eq=False)
 class Skeleton:
@@ -88,7 +103,8 @@ def forward_kinematics(
 ) -> NDArray[np.float64]:
     """World transforms of all joints.
 
-    rotations: [T, J, 3, 3], local rotation of each joint relative to the bind pose; the root's is in the world
+    rotations: [T, J, 3, 3], local rotation of each joint relative to the bind pose;
+        the root's is in the world
     root: [T, 3], position of the hips joint in the world, metres
     returns: float64 [T, J, 4, 4] world_from_joint
     """
@@ -108,7 +124,63 @@ def forward_kinematics(
 
 
 def skinning_matrices(skeleton: Skeleton, world_from_joint: NDArray[np.floating]) -> NDArray[np.float32]:
-    """World-from-bind matrices for linear blend skinning: float32 [T, J, 3, 4]."""
-    out = np.array(world_from_joint[..., :3, :], dtype=np.float64)
-    out[..., 3] -= np.einsum("tjab,jb->tja", out[..., :3], skeleton.bind)
-    return out.astype(np.float32)
+    """World-from-bind matrices for linear blend skinning: float32 [T, len(PALETTE), 3, 4].
+
+    world_from_joint: [T, J, 4, 4], one for each of :data:`JOINTS`. The helpers that follow them in
+    :data:`PALETTE` are derived here: a half joint turns half as far as its joint does against its parent
+    and keeps elbows, knees, shoulders and hips full when they bend; a twist takes half of the hand's turn
+    about the forearm.
+    """
+    frames = len(world_from_joint)
+    world = np.empty((frames, len(PALETTE), 3, 4))
+    world[:, : len(JOINTS)] = world_from_joint[..., :3, :]
+    bind = np.concatenate([skeleton.bind, np.zeros((len(HELPERS), 3))])
+    for k, (name, joint) in enumerate(HELPERS, len(JOINTS)):
+        j = JOINT[joint]
+        parent = PARENTS[j]
+        base, linear = world_from_joint[:, parent, :3, :3], world_from_joint[:, j, :3, :3]
+        turn = _quaternion(np.swapaxes(base, -1, -2) @ linear)
+        if name.startswith("twist"):
+            axis = skeleton.bind[j] - skeleton.bind[parent]
+            axis = axis / np.linalg.norm(axis)
+            turn = np.concatenate([turn[:, :1], (turn[:, 1:] @ axis)[:, None] * axis], axis=1)
+        turn[:, 0] += np.linalg.norm(turn, axis=1) + 1e-9  # halfway to no turn
+        world[:, k, :, :3] = base @ _matrix(turn)
+        world[:, k, :, 3] = world_from_joint[:, j, :3, 3]
+        bind[k] = skeleton.bind[j]
+    world[..., 3] -= np.einsum("tjab,jb->tja", world[..., :3], bind)
+    return world.astype(np.float32)
+
+
+def _quaternion(rotation: NDArray[np.floating]) -> NDArray[np.float64]:
+    """Unit quaternions (w, x, y, z) with w >= 0 of rotation matrices [T, 3, 3]."""
+    m = np.asarray(rotation, np.float64)
+    xx, yy, zz = m[:, 0, 0], m[:, 1, 1], m[:, 2, 2]
+    size = np.stack([1 + xx + yy + zz, 1 + xx - yy - zz, 1 - xx + yy - zz, 1 - xx - yy + zz], axis=1)
+    a, b, c = m[:, 2, 1] - m[:, 1, 2], m[:, 0, 2] - m[:, 2, 0], m[:, 1, 0] - m[:, 0, 1]
+    d, e, f = m[:, 1, 0] + m[:, 0, 1], m[:, 0, 2] + m[:, 2, 0], m[:, 2, 1] + m[:, 1, 2]
+    rows = np.stack(
+        [
+            np.stack([size[:, 0], a, b, c], axis=1),
+            np.stack([a, size[:, 1], d, e], axis=1),
+            np.stack([b, d, size[:, 2], f], axis=1),
+            np.stack([c, e, f, size[:, 3]], axis=1),
+        ],
+        axis=1,
+    )
+    q = rows[np.arange(len(m)), np.argmax(size, axis=1)]
+    q = q / np.linalg.norm(q, axis=1, keepdims=True)
+    return np.where(q[:, :1] < 0, -q, q)
+
+
+def _matrix(quaternion: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Rotation matrices [T, 3, 3] of quaternions of any length."""
+    w, x, y, z = (quaternion / np.linalg.norm(quaternion, axis=1, keepdims=True)).T
+    return np.stack(
+        [
+            np.stack([1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)], axis=1),
+            np.stack([2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)], axis=1),
+            np.stack([2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)], axis=1),
+        ],
+        axis=1,
+    )

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from runtime.body.build import Body
-from runtime.body.skeleton import JOINTS, skinning_matrices
+from runtime.body.skeleton import PALETTE, skinning_matrices
 from runtime.mesh import Mesh, join
 from runtime.raster.types import RenderScene
 from runtime.world import World
@@ -46,7 +46,7 @@ def assemble(world: World, bodies: Mapping[str, Body]) -> StagedScene:
     first_joint: dict[str, int] = {}
     object_ids: dict[str, int] = {}
     for k, (name, body) in enumerate(bodies.items()):
-        first_joint[name] = k * len(JOINTS)
+        first_joint[name] = k * len(PALETTE)
         object_ids[name] = len(world.objects) + k
         meshes.append(body.mesh)
         joints.append(body.joints + np.int32(first_joint[name]))
@@ -56,7 +56,7 @@ def assemble(world: World, bodies: Mapping[str, Body]) -> StagedScene:
     for thing in world.objects:
         if thing.mesh is None:
             continue
-        prop_entry[thing.id] = len(bodies) * len(JOINTS) + len(prop_entry)
+        prop_entry[thing.id] = len(bodies) * len(PALETTE) + len(prop_entry)
         count = len(thing.mesh.vertices)
         meshes.append(thing.mesh)
         joints.append(np.full((count, 4), prop_entry[thing.id], np.int32))
@@ -79,7 +79,7 @@ def assemble(world: World, bodies: Mapping[str, Body]) -> StagedScene:
         ),
         first_joint=first_joint,
         prop_entry=prop_entry,
-        palette_size=len(bodies) * len(JOINTS) + len(prop_entry),
+        palette_size=len(bodies) * len(PALETTE) + len(prop_entry),
         object_ids=object_ids,
     )
 
@@ -108,7 +108,7 @@ def palettes(
     out = np.empty((len(frames), staged.palette_size, 3, 4), np.float32)
     for name, first in staged.first_joint.items():
         skeleton = staged.bodies[name].skeleton
-        out[:, first : first + len(JOINTS)] = skinning_matrices(skeleton, world_from_joint[name][frames])
+        out[:, first : first + len(PALETTE)] = skinning_matrices(skeleton, world_from_joint[name][frames])
     for object_id, entry in staged.prop_entry.items():
         track = world_from_object.get(object_id)
         if track is None:

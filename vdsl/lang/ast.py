@@ -10,11 +10,8 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TypeAlias
 
-from .source import Span
+from .source import Source, Span
 
-
-def _span() -> Span:
-    return field(compare=False, repr=False)  # type: ignore[no-any-return]
 
 
 # --- values -------------------------------------------------------------------------
@@ -26,13 +23,13 @@ class Number:
 
     value: float
     unit: str | None
-    span: Span = _span()
+    span: Span = field(compare=False, repr=False)
 
 
 @dataclass(frozen=True)
 class Text:
     value: str
-    span: Span = _span()
+    span: Span = field(compare=False, repr=False)
 
 
 @dataclass(frozen=True)
@@ -40,7 +37,7 @@ class Name:
     """A name or dotted path: ``chair_2.seat`` has parts ``("chair_2", "seat")``."""
 
     parts: tuple[str, ...]
-    span: Span = _span()
+    span: Span = field(compare=False, repr=False)
 
     @property
     def text(self) -> str:
@@ -53,7 +50,7 @@ class Group:
 
     items: tuple[Value, ...]
     unit: str | None
-    span: Span = _span()
+    span: Span = field(compare=False, repr=False)
 
 
 @dataclass(frozen=True)
@@ -62,7 +59,7 @@ class Range:
 
     low: Number
     high: Number
-    span: Span = _span()
+    span: Span = field(compare=False, repr=False)
 
 
 @dataclass(frozen=True)
@@ -72,13 +69,13 @@ class Binary:
     op: str
     left: Value
     right: Value
-    span: Span = _span()
+    span: Span = field(compare=False, repr=False)
 
 
 @dataclass(frozen=True)
 class Negate:
     value: Value
-    span: Span = _span()
+    span: Span = field(compare=False, repr=False)
 
 
 @dataclass(frozen=True)
@@ -87,7 +84,7 @@ class Argument:
 
     name: Name
     values: tuple[Value, ...]
-    span: Span = _span()
+    span: Span = field(compare=False, repr=False)
 
 
 @dataclass(frozen=True)
@@ -96,10 +93,25 @@ class Call:
 
     callee: Name
     arguments: tuple[Argument, ...]
-    span: Span = _span()
+    span: Span = field(compare=False, repr=False)
 
 
-Value: TypeAlias = Number | Text | Name | Group | Range | Binary | Negate | Call
+@dataclass(frozen=True)
+class Star:
+    """``*``: any, the compiler proposes."""
+
+    span: Span = field(compare=False, repr=False)
+
+
+@dataclass(frozen=True)
+class Choice:
+    """``slow-in|linear``: any of these (in options of story lines)."""
+
+    items: tuple[Value, ...]
+    span: Span = field(compare=False, repr=False)
+
+
+Value: TypeAlias = Number | Text | Name | Group | Range | Binary | Negate | Call | Star | Choice
 
 
 # --- definitions --------------------------------------------------------------------
@@ -111,7 +123,7 @@ class Option:
 
     name: Name
     values: tuple[Value, ...]
-    span: Span = _span()
+    span: Span = field(compare=False, repr=False)
 
 
 @dataclass(frozen=True)
@@ -127,7 +139,7 @@ class Entry:
     bound: tuple[Value, ...]
     options: tuple[Option, ...]
     body: tuple[Entry, ...] | None
-    span: Span = _span()
+    span: Span = field(compare=False, repr=False)
 
 
 @dataclass(frozen=True)
@@ -136,7 +148,7 @@ class Parameter:
 
     name: Name
     default: tuple[Value, ...]
-    span: Span = _span()
+    span: Span = field(compare=False, repr=False)
 
 
 @dataclass(frozen=True)
@@ -147,4 +159,135 @@ class Definition:
     name: Name
     parameters: tuple[Parameter, ...]
     body: tuple[Entry, ...]
-    span: Span = _span()
+    span: Span = field(compare=False, repr=False)
+
+
+@dataclass(frozen=True)
+class FileDefinition:
+    """``prop lamp = "lamp.glb"``: a definition whose body is another program's file."""
+
+    kind: str
+    name: Name
+    path: Text
+    span: Span = field(compare=False, repr=False)
+
+
+# --- the story ----------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class Title:
+    """``storyboard "Morning coffee"``"""
+
+    text: Text | None
+    span: Span = field(compare=False, repr=False)
+
+
+@dataclass(frozen=True)
+class Header:
+    """``fps 24``, ``size 1280x720`` (two numbers), ``aspect 2.39``, ``rig paper`` …"""
+
+    keyword: Name
+    values: tuple[Value, ...]
+    span: Span = field(compare=False, repr=False)
+
+
+@dataclass(frozen=True)
+class Use:
+    """``use "common.vds"``"""
+
+    path: Text
+    span: Span = field(compare=False, repr=False)
+
+
+@dataclass(frozen=True)
+class CharacterLine:
+    """``character anna = woman(height 1.68m)``"""
+
+    name: Name
+    cast: Name | Call | Text
+    span: Span = field(compare=False, repr=False)
+
+
+@dataclass(frozen=True)
+class SceneLine:
+    """``scene kitchen = apartment.kitchen at dusk``; without ``=`` the name is the set's too."""
+
+    name: Name
+    set: Name | None
+    time: Name | None
+    span: Span = field(compare=False, repr=False)
+
+
+@dataclass(frozen=True)
+class PlacementLine:
+    """``anna at door facing window``; posture is ``sitting``, ``standing`` or None where not said."""
+
+    character: Name
+    at: Name | None
+    facing: Name | None
+    posture: Name | None
+    span: Span = field(compare=False, repr=False)
+
+
+@dataclass(frozen=True)
+class BeatNode:
+    """``(anna pick up cup)``: the words as written, the first one the character."""
+
+    words: tuple[Name, ...]
+    span: Span = field(compare=False, repr=False)
+
+
+@dataclass(frozen=True)
+class CameraNode:
+    """``/ (push|static * eye level) lens 50mm``.
+
+    words: names, ``*`` (Star) and choices (Choice of names), in the order written; None where only
+        options follow the slash
+    """
+
+    words: tuple[Name | Star | Choice, ...] | None
+    options: tuple[Option, ...]
+    span: Span = field(compare=False, repr=False)
+
+
+@dataclass(frozen=True)
+class StoryNode:
+    """A story line with its cameras; without beats an establishing shot."""
+
+    beats: tuple[BeatNode, ...]
+    options: tuple[Option, ...]
+    cameras: tuple[CameraNode, ...]
+    span: Span = field(compare=False, repr=False)
+
+
+@dataclass(frozen=True)
+class TransitionLine:
+    """``dissolve 12f``"""
+
+    kind: Name
+    duration: Number | None
+    span: Span = field(compare=False, repr=False)
+
+
+Statement: TypeAlias = (
+    Title
+    | Header
+    | Use
+    | CharacterLine
+    | SceneLine
+    | PlacementLine
+    | StoryNode
+    | TransitionLine
+    | Definition
+    | FileDefinition
+)
+
+
+@dataclass(frozen=True)
+class Script:
+    """A whole file, its statements in the order written; lines with errors are left out."""
+
+    source: Source
+    statements: tuple[Statement, ...]
+    span: Span = field(compare=False, repr=False)

@@ -1,0 +1,87 @@
+"""Starts Taichi once per process.
+
+Assumes nobody else calls ``ti.init``. Guarantees one backend per process: asking for another one
+later is an error, because Taichi would throw every kernel and buffer away.
+"""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import DTypeLike, NDArray
+
+DEVICES = ("auto", "cpu", "cuda", "vulkan")
+
+
+class DeviceError(RuntimeError):
+    """The asked-for device cannot be used; the message says what to do."""
+
+
+@dataclass(frozen=True)
+class Backend:
+    """The running backend. name: ``cpu``, ``cuda`` or ``vulkan``; threads: CPU threads in use."""
+
+    name: str
+    threads: int
+
+    @property
+    def on_host(self) -> bool:
+        """Whether kernels work on numpy arrays in place."""
+        return self.name == "cpu"
+
+    def buffer(self, shape: tuple[int, ...], dtype: DTypeLike) -> Any:
+        """An uninitialised array that kernels can use: numpy on the host, else a Taichi ndarray."""
+        if self.on_host:
+            return np.zeros(shape, dtype)
+        import taichi as ti
+
+        kinds = {"f": ti.f32, "i": ti.i32, "u": ti.u32 if np.dtype(dtype).itemsize == 4 else ti.u64}
+        return ti.ndarray(kinds[np.dtype(dtype).kind], shape=shape)
+
+    def upload(self, array: NDArray[Any]) -> Any:
+        """A copy of ``array`` (at least one element long) where kernels can use it."""
+        if array.size == 0:
+            array = np.zeros(tuple(max(s, 1) for s in array.shape), array.dtype)
+        array = np.ascontiguousarray(array)
+        if self.on_host:
+            return array
+        out = self.buffer(array.shape, array.dtype)
+        out.from_numpy(array)
+        return out
+
+
+_started: list[Backend] = []
+
+
+def start(device: str = "auto") -> Backend:
+    """Start Taichi on ``device``, or return the backend already running. Raises DeviceError."""
+    if device not in DEVICES:
+        raise DeviceError(f"unknown device {device!r}; choose one of {', '.join(DEVICES)}")
+    if _started:
+        backend = _started[0]
+        if device not in ("auto", backend.name):
+            raise DeviceError(f"this process already renders on {backend.name}; start another one for {device}")
+        return backend
+    import taichi as ti
+
+    threads = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    wanted = {"auto": ("cuda", "cpu")}.get(device, (device,))
+    for name in wanted:
+        arch = getattr(ti, name)
+        if name != "cpu" and not ti._lib.core.with_cuda() and name == "cuda":
+            continue
+        ti.init(
+            arch=arch,
+            offline_cache=True,
+            cpu_max_num_threads=threads,
+            fast_math=False,
+            log_level=ti.ERROR,
+            enable_fallback=False,
+        )
+        if ti.lang.impl.current_cfg().arch == arch or name == "cpu":
+            _started.append(Backend(name, threads))
+            return _started[0]
+    raise DeviceError(f"no usable {device} device here; try --device cpu")

@@ -1,0 +1,292 @@
+"""Geometry: skinning, bounds, and triangles into the visibility buffer.
+
+The visibility buffer holds, per pixel, ``depth key << 32 | triangle + 1`` and keeps the largest: the
+key is the bit pattern of 1/z, which is linear over the picture and orders like the number it is.
+A pixel belongs to a triangle when its centre is inside, left and top edges included. Edges are
+walked from their upper end, so triangles that share one agree on it to the last bit.
+"""
+
+import taichi as ti
+
+NEAR = 0.03  # metres
+VIEW = 16  # floats a view: position, right, up, forward, scale x, scale y, half width, half height
+vec3 = ti.types.vector(3, ti.f32)
+
+f1 = ti.types.ndarray(ti.f32, ndim=1)
+f2 = ti.types.ndarray(ti.f32, ndim=2)
+f3 = ti.types.ndarray(ti.f32, ndim=3)
+f4 = ti.types.ndarray(ti.f32, ndim=4)
+i1 = ti.types.ndarray(ti.i32, ndim=1)
+i2 = ti.types.ndarray(ti.i32, ndim=2)
+u32s = ti.types.ndarray(ti.u32, ndim=1)
+u64s = ti.types.ndarray(ti.u64, ndim=1)
+
+
+@ti.func
+def row3(a: ti.template(), i):
+    return vec3(a[i, 0], a[i, 1], a[i, 2])
+
+
+@ti.func
+def item3(a: ti.template(), m, i):
+    return vec3(a[m, i, 0], a[m, i, 1], a[m, i, 2])
+
+
+@ti.func
+def part3(a: ti.template(), i, k):
+    return vec3(a[i, k], a[i, k + 1], a[i, k + 2])
+
+
+@ti.kernel
+def skin(
+    palette: f4, rest: f2, rest_normal: f2, joints: i2, weights: f2, moments: ti.i32, position: f3, normal: f3
+):
+    """Linear blend skinning of all vertices in the first ``moments`` palettes."""
+    count = rest.shape[0]
+    for i in range(moments * count):
+        m = i // count
+        v = i % count
+        p = row3(rest, v)
+        q = row3(rest_normal, v)
+        out = vec3(0)
+        out_normal = vec3(0)
+        for k in range(4):
+            w = weights[v, k]
+            if w > 0:
+                j = joints[v, k]
+                for a in ti.static(range(3)):
+                    r = vec3(palette[m, j, a, 0], palette[m, j, a, 1], palette[m, j, a, 2])
+                    out[a] += w * (r.dot(p) + palette[m, j, a, 3])
+                    out_normal[a] += w * r.dot(q)
+        out_normal /= ti.max(out_normal.norm(), 1e-12)
+        for a in ti.static(range(3)):
+            position[m, v, a] = out[a]
+            normal[m, v, a] = out_normal[a]
+
+
+@ti.kernel
+def bound(faces: i2, clusters: i2, first: ti.i32, static_vertices: ti.i32, moments: ti.i32, position: f3, sphere: f3):
+    """Bounding spheres of the moving clusters (those from ``first`` on) at every moment."""
+    count = clusters.shape[0] - first
+    for i in range(moments * count):
+        m = i // count
+        c = i % count
+        low = vec3(1e30)
+        high = vec3(-1e30)
+        begin = clusters[first + c, 0]
+        for t in range(begin, begin + clusters[first + c, 1]):
+            for k in ti.static(range(3)):
+                p = item3(position, m, faces[t, k] - static_vertices)
+                low = ti.min(low, p)
+                high = ti.max(high, p)
+        centre = (low + high) * 0.5
+        for a in ti.static(range(3)):
+            sphere[m, c, a] = centre[a]
+        sphere[m, c, 3] = (high - low).norm() * 0.5
+
+
+@ti.func
+def to_pixel(v):
+    """First pixel whose centre is not before ``v``."""
+    return ti.ceil(v - 0.5)
+
+
+@ti.func
+def fill(vis: ti.template(), exact: ti.template(), base, width, y_from, y_to, y_step, low, a, b, c):
+    """Walk the spans of one screen triangle; corners are (x, y, 1/z), ``low`` the low word of the key."""
+    if a.y > b.y:
+        a, b = b, a
+    if b.y > c.y:
+        b, c = c, b
+    if a.y > b.y:
+        a, b = b, a
+    y0 = ti.max(y_from, ti.cast(ti.max(to_pixel(a.y), -1e6), ti.i32))
+    y1 = ti.min(y_to, ti.cast(ti.min(to_pixel(c.y), 1e6), ti.i32))
+    if y0 < y1:
+        y0 += (y_from - y0) % y_step if ti.static(not exact) else 0
+        ab = b - a
+        ac = c - a
+        bc = c - b
+        det = ab.x * ac.y - ac.x * ab.y
+        if det != 0:
+            slope_x = (ab.z * ac.y - ac.z * ab.y) / det
+            slope_y = (ac.z * ab.x - ab.z * ac.x) / det
+            least = ti.min(a.z, b.z, c.z)
+            most = ti.max(a.z, b.z, c.z)
+            long = ac.x / ac.y
+            upper = ab.x / ab.y if ab.y > 0 else 0.0
+            lower = bc.x / bc.y if bc.y > 0 else 0.0
+            y = y0
+            while y < y1:
+                centre = ti.cast(y, ti.f32) + 0.5
+                xa = a.x + (centre - a.y) * long
+                xb = a.x + (centre - a.y) * upper
+                if centre >= b.y:
+                    xb = b.x + (centre - b.y) * lower
+                limit = ti.cast(width, ti.f32)
+                x0 = ti.cast(ti.min(ti.max(to_pixel(ti.min(xa, xb)), 0.0), limit), ti.i32)
+                x1 = ti.cast(ti.min(ti.max(to_pixel(ti.max(xa, xb)), 0.0), limit), ti.i32)
+                row = a.z + (centre - a.y) * slope_y + (0.5 - a.x) * slope_x
+                start = base + y * width
+                for x in range(x0, x1):
+                    w = ti.min(ti.max(row + ti.cast(x, ti.f32) * slope_x, least), most)
+                    key = (ti.cast(ti.bit_cast(w, ti.u32), ti.u64) << 32) | low
+                    if ti.static(exact):
+                        if key > vis[start + x]:
+                            vis[start + x] = key
+                    else:
+                        ti.atomic_max(vis[start + x], key)
+                y += y_step
+
+
+@ti.func
+def draw(
+    vis: ti.template(), exact: ti.template(), base, width, y_from, y_to, y_step, low, cull, scale, half, p0, p1, p2
+):
+    """Cull, clip at the near plane, project and fill one triangle given in camera coordinates.
+
+    Right, up, forward is a left-handed frame: a positive determinant faces the camera.
+    """
+    facing = p0.dot(p1.cross(p2))
+    if facing > 0 or (facing < 0 and not cull):
+        inside = ti.cast(p0.z > NEAR, ti.i32) + ti.cast(p1.z > NEAR, ti.i32) + ti.cast(p2.z > NEAR, ti.i32)
+        if inside > 0:
+            a, b, c, d = p0, p1, p2, p2
+            pieces = 1
+            if inside == 1:
+                # a becomes the corner in front
+                if p1.z > NEAR:
+                    a, b, c = p1, p2, p0
+                elif p2.z > NEAR:
+                    a, b, c = p2, p0, p1
+                b, c = a + (b - a) * ((a.z - NEAR) / (a.z - b.z)), a + (c - a) * ((a.z - NEAR) / (a.z - c.z))
+                b.z = NEAR
+                c.z = NEAR
+            elif inside == 2:
+                # a becomes the corner behind, and is cut off
+                if p1.z <= NEAR:
+                    a, b, c = p1, p2, p0
+                elif p2.z <= NEAR:
+                    a, b, c = p2, p0, p1
+                d = c + (a - c) * ((c.z - NEAR) / (c.z - a.z))
+                a = b + (a - b) * ((b.z - NEAR) / (b.z - a.z))
+                a.z = NEAR
+                d.z = NEAR
+                pieces = 2
+            sa = screen(a, scale, half)
+            sb = screen(b, scale, half)
+            sc = screen(c, scale, half)
+            sd = screen(d, scale, half)
+            for k in range(pieces):
+                if k == 1:
+                    sb, sc = sc, sd
+                fill(vis, exact, base, width, y_from, y_to, y_step, low, sa, sb, sc)
+
+
+@ti.func
+def screen(p, scale, half):
+    w = 1.0 / p.z
+    return vec3(half.x + scale.x * p.x * w, half.y - scale.y * p.y * w, w)
+
+
+@ti.func
+def in_sight(view: ti.template(), n, centre, radius):
+    """Whether a sphere touches the view's pyramid."""
+    d = centre - part3(view, n, 0)
+    x = d.dot(part3(view, n, 3))
+    y = d.dot(part3(view, n, 6))
+    z = d.dot(part3(view, n, 9))
+    tx = view[n, 14] / view[n, 12]
+    ty = view[n, 15] / view[n, 13]
+    return (
+        z > NEAR - radius
+        and (ti.abs(x) - z * tx) < radius * ti.sqrt(1 + tx * tx)
+        and (ti.abs(y) - z * ty) < radius * ti.sqrt(1 + ty * ty)
+    )
+
+
+@ti.kernel
+def raster_serial(
+    view: f2,
+    moment: i1,
+    hidden: i2,
+    vertices: f2,
+    position: f3,
+    faces: i2,
+    clusters: i2,
+    sphere: f2,
+    moving_sphere: f3,
+    moving_first: ti.i32,
+    static_vertices: ti.i32,
+    vis: u64s,
+    views: ti.i32,
+    width: ti.i32,
+    height: ti.i32,
+    bands: ti.i32,
+):
+    """Fill the visibility buffers, each band of each view by one thread alone, clearing it first.
+
+    clusters [C, 4]: first triangle, count, cull, wall; those from ``moving_first`` on are skinned
+    """
+    ti.loop_config(block_dim=1)
+    for task in range(views * bands):
+        n = task // bands
+        band = task % bands
+        y_from = height * band // bands
+        y_to = height * (band + 1) // bands
+        base = n * height * width
+        for i in range(base + y_from * width, base + y_to * width):
+            vis[i] = ti.u64(0)
+        eye = part3(view, n, 0)
+        right = part3(view, n, 3)
+        up = part3(view, n, 6)
+        forward = part3(view, n, 9)
+        scale = ti.Vector([view[n, 12], view[n, 13]])
+        half = ti.Vector([view[n, 14], view[n, 15]])
+        m = moment[n]
+        for k in range(clusters.shape[0]):
+            # the moving ones first: they are near, and hide much
+            c = (k + moving_first) % clusters.shape[0]
+            moving = c >= moving_first
+            ball = ti.Vector([0.0, 0.0, 0.0, 0.0])
+            if moving:
+                for a in ti.static(range(4)):
+                    ball[a] = moving_sphere[m, c - moving_first, a]
+            else:
+                for a in ti.static(range(4)):
+                    ball[a] = sphere[c, a]
+            wall = clusters[c, 3]
+            shown = True
+            if wall >= 0:
+                shown = hidden[n, wall] == 0
+            if shown and in_sight(view, n, ball.xyz, ball.w):
+                cull = clusters[c, 2] != 0
+                for t in range(clusters[c, 0], clusters[c, 0] + clusters[c, 1]):
+                    p0, p1, p2 = vec3(0), vec3(0), vec3(0)
+                    if moving:
+                        p0 = item3(position, m, faces[t, 0] - static_vertices)
+                        p1 = item3(position, m, faces[t, 1] - static_vertices)
+                        p2 = item3(position, m, faces[t, 2] - static_vertices)
+                    else:
+                        p0 = row3(vertices, faces[t, 0])
+                        p1 = row3(vertices, faces[t, 1])
+                        p2 = row3(vertices, faces[t, 2])
+                    p0 -= eye
+                    p1 -= eye
+                    p2 -= eye
+                    draw(
+                        vis,
+                        True,
+                        base,
+                        width,
+                        y_from,
+                        y_to,
+                        1,
+                        ti.cast(t + 1, ti.u64),
+                        cull,
+                        scale,
+                        half,
+                        vec3(right.dot(p0), up.dot(p0), forward.dot(p0)),
+                        vec3(right.dot(p1), up.dot(p1), forward.dot(p1)),
+                        vec3(right.dot(p2), up.dot(p2), forward.dot(p2)),
+                    )

@@ -1,0 +1,201 @@
+"""Turns a RenderScene into the flat arrays that kernels read.
+
+Assumes a valid scene (checked here, ValueError otherwise). Guarantees: static triangles come first,
+both parts are cut into clusters of neighbouring triangles that share wall, culling and object.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import coo_matrix
+from scipy.sparse.csgraph import connected_components
+
+from ..mesh import MATERIALS, Mesh
+from .types import RenderScene, Style
+
+CLUSTER = 64  # triangles
+WELD = 1e-5  # metres
+FLAT = 1  # surface flag: the triangle's three normals are one
+MOVES = 2  # surface flag: skinned
+SHIFT = 8  # flags sit above the material in info
+
+
+@dataclass(frozen=True, eq=False)
+class Prepared:
+    """Flat arrays of a scene. V static vertices, K skinned ones, F triangles, C clusters, S surfaces.
+
+    vertices, normals: float32 [V, 3]; rest, rest_normals: float32 [K, 3]
+    faces: int32 [F, 3] into both one after the other; color: float32 [F, 3] linear
+    info: int32 [F, 2]: surface index, material | flags << SHIFT
+    clusters: int32 [C, 4]: first triangle, count, cull, wall; moving_first: index of the first skinned one
+    sphere: float32 [C, 4], bounds of the static ones
+    surface_object: int32 [S]: object id of each surface, a surface being one part of one object
+    """
+
+    vertices: NDArray[np.float32]
+    normals: NDArray[np.float32]
+    rest: NDArray[np.float32]
+    rest_normals: NDArray[np.float32]
+    faces: NDArray[np.int32]
+    color: NDArray[np.float32]
+    info: NDArray[np.int32]
+    clusters: NDArray[np.int32]
+    moving_first: int
+    sphere: NDArray[np.float32]
+    surface_object: NDArray[np.int32]
+
+
+def to_linear(color: NDArray[np.floating]) -> NDArray[np.float64]:
+    """sRGB-encoded 0..1 to linear light (IEC 61966-2-1)."""
+    color = np.clip(np.asarray(color, np.float64), 0.0, 1.0)
+    return np.where(color <= 0.04045, color / 12.92, ((color + 0.055) / 1.055) ** 2.4)
+
+
+def to_encoded(light: NDArray[np.floating]) -> NDArray[np.float64]:
+    """Linear light to sRGB-encoded 0..1 (IEC 61966-2-1)."""
+    light = np.clip(np.asarray(light, np.float64), 0.0, 1.0)
+    return np.where(light <= 0.0031308, light * 12.92, 1.055 * light ** (1 / 2.4) - 0.055)
+
+
+def check(scene: RenderScene) -> None:
+    """Raise ValueError for a scene that cannot be drawn."""
+    for name, mesh, ids in (
+        ("static", scene.static, scene.static_object),
+        ("skinned", scene.skinned, scene.skinned_object),
+    ):
+        if not np.isfinite(mesh.normals).all() or not np.isfinite(mesh.colors).all():
+            raise ValueError(f"RenderScene.{name}: normals and colours must be finite")
+        if len(ids) != len(mesh.faces):
+            raise ValueError(f"RenderScene.{name}_object: expected one id for each of {len(mesh.faces)} faces")
+        if len(mesh.materials) and not (0 <= mesh.materials.min() and mesh.materials.max() < len(MATERIALS)):
+            raise ValueError(f"RenderScene.{name}: a material is not in MATERIALS")
+    if len(scene.static_wall) != len(scene.static.faces):
+        raise ValueError("RenderScene.static_wall: expected one number for each static face")
+    if len(scene.static_wall) and scene.static_wall.max() >= scene.wall_count:
+        raise ValueError("RenderScene.static_wall: a wall is not below wall_count")
+    shape = (len(scene.skinned.vertices), 4)
+    if scene.joints.shape != shape or scene.weights.shape != shape:
+        raise ValueError(f"RenderScene.joints, weights: expected {shape}")
+    if not np.isfinite(scene.weights).all():
+        raise ValueError("RenderScene.weights: not all are finite")
+
+
+def closed_faces(mesh: Mesh, object_ids: NDArray[np.int32]) -> NDArray[np.bool_]:
+    """Which faces belong to a closed, consistently wound shell, so that their backs are never seen.
+
+    Vertices at one place are one; a shell is the faces connected by edges within an object.
+    """
+    count = len(mesh.faces)
+    if not count:
+        return np.zeros(0, np.bool_)
+    _, welded = np.unique(np.round(mesh.vertices / WELD).astype(np.int64), axis=0, return_inverse=True)
+    faces = welded.reshape(-1)[mesh.faces]
+    start = faces[:, [0, 1, 2]].reshape(-1)
+    end = faces[:, [1, 2, 0]].reshape(-1)
+    owner = np.repeat(np.arange(count), 3)
+    keys = np.stack([np.minimum(start, end), np.maximum(start, end), object_ids[owner]], axis=1)
+    _, edge = np.unique(keys, axis=0, return_inverse=True)
+    edge = edge.reshape(-1)
+    balance = np.bincount(edge, weights=np.where(start < end, 1.0, -1.0))
+    real = start != end
+    bad_face = np.zeros(count, np.bool_)
+    np.logical_or.at(bad_face, owner[real], balance[edge[real]] != 0)
+    edges = int(edge.max()) + 1
+    graph = coo_matrix((np.ones(len(edge)), (owner, count + edge)), shape=(count + edges, count + edges))
+    _, shell = connected_components(graph, directed=False)
+    open_shell = np.zeros(shell.max() + 1, np.bool_)
+    np.logical_or.at(open_shell, shell[:count], bad_face)
+    return ~open_shell[shell[:count]]
+
+
+def _clusters(
+    mesh: Mesh, object_ids: NDArray[np.int32], wall: NDArray[np.int32], cull: NDArray[np.bool_]
+) -> tuple[NDArray[np.int64], NDArray[np.int32]]:
+    """Order of the faces, and clusters [C, 4] over that order."""
+    if not len(mesh.faces):
+        return np.zeros(0, np.int64), np.zeros((0, 4), np.int32)
+    order = np.lexsort((np.arange(len(wall)), object_ids, cull, wall))
+    key = np.stack([wall, object_ids, cull], axis=1)[order]
+    change = np.flatnonzero((key[1:] != key[:-1]).any(axis=1)) + 1
+    begins = np.concatenate([[0], change, [len(order)]])
+    rows = [
+        (at, min(CLUSTER, stop - at), int(key[at, 2]), int(key[at, 0]))
+        for begin, stop in zip(begins[:-1], begins[1:], strict=True)
+        for at in range(begin, stop, CLUSTER)
+    ]
+    return order, np.array(rows, np.int32)
+
+
+def _spheres(mesh: Mesh, clusters: NDArray[np.int32]) -> NDArray[np.float32]:
+    out = np.zeros((len(clusters), 4), np.float32)
+    for i, (begin, count, _, _) in enumerate(clusters):
+        points = mesh.vertices[mesh.faces[begin : begin + count]].reshape(-1, 3)
+        low, high = points.min(axis=0), points.max(axis=0)
+        out[i, :3] = (low + high) / 2
+        out[i, 3] = np.linalg.norm(high - low) / 2 * 1.0001 + 1e-6
+    return out
+
+
+def _ordered(mesh: Mesh, order: NDArray[np.int64]) -> Mesh:
+    return Mesh(
+        mesh.vertices,
+        np.ascontiguousarray(mesh.faces[order]),
+        mesh.normals,
+        mesh.colors[order],
+        mesh.parts[order],
+        mesh.materials[order],
+    )
+
+
+def quieted(color: NDArray[np.floating], quiet: float) -> NDArray[np.float64]:
+    """Linear colours drawn towards a pale, slightly grey tint of themselves."""
+    color = np.asarray(color, np.float64)
+    luma = color @ np.array([0.2126, 0.7152, 0.0722])
+    softened = luma[:, None] + (color - luma[:, None]) * (1.0 - 0.55 * quiet)
+    pale = np.array([0.74, 0.72, 0.69])
+    return softened + (pale - softened) * 0.5 * quiet
+
+
+def prepare(scene: RenderScene, style: Style) -> Prepared:
+    """Check, order and pack a scene. Raises ValueError."""
+    check(scene)
+    static_cull = closed_faces(scene.static, scene.static_object)
+    moving_cull = closed_faces(scene.skinned, scene.skinned_object)
+    order, clusters = _clusters(scene.static, scene.static_object, scene.static_wall, static_cull)
+    static = _ordered(scene.static, order)
+    none = np.full(len(scene.skinned.faces), -1, np.int32)
+    moving_order, moving_clusters = _clusters(scene.skinned, scene.skinned_object, none, moving_cull)
+    skinned = _ordered(scene.skinned, moving_order)
+    moving_clusters = moving_clusters.copy()
+    moving_clusters[:, 0] += len(order)
+
+    object_ids = np.concatenate([scene.static_object[order], scene.skinned_object[moving_order]])
+    parts = np.concatenate([static.parts, skinned.parts])
+    surfaces, surface = np.unique(np.stack([object_ids, parts], axis=1), axis=0, return_inverse=True)
+    if len(surfaces) >= 0xFFFF:
+        raise ValueError(f"RenderScene: {len(surfaces)} parts of objects; 65534 is the most")
+    flags = np.concatenate([_flat(static) * FLAT, _flat(skinned) * FLAT + MOVES]).astype(np.int32)
+    materials = np.concatenate([static.materials, skinned.materials])
+    color = np.concatenate([quieted(to_linear(static.colors), style.quiet), to_linear(skinned.colors)])
+    return Prepared(
+        vertices=static.vertices,
+        normals=static.normals,
+        rest=skinned.vertices,
+        rest_normals=skinned.normals,
+        faces=np.concatenate([static.faces, skinned.faces + np.int32(len(static.vertices))]).astype(np.int32),
+        color=color.astype(np.float32),
+        info=np.stack([surface.reshape(-1), materials | (flags << SHIFT)], axis=1).astype(np.int32),
+        clusters=np.concatenate([clusters, moving_clusters]).astype(np.int32),
+        moving_first=len(clusters),
+        sphere=_spheres(static, clusters),
+        surface_object=surfaces[:, 0].astype(np.int32),
+    )
+
+
+def _flat(mesh: Mesh) -> NDArray[np.int32]:
+    """1 where a face's three normals are the same."""
+    n = mesh.normals[mesh.faces]
+    return ((n[:, 0] == n[:, 1]).all(axis=1) & (n[:, 0] == n[:, 2]).all(axis=1)).astype(np.int32)

@@ -1,0 +1,251 @@
+"""Draws batches of views.
+
+Assumes scenes and cameras in metres, Z up. Guarantees: the same input gives the same bytes, a batch
+gives what its views give one by one, and memory is bounded however long the batch is.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .device import Backend, start
+from .prepare import Prepared, prepare, to_encoded, to_linear
+from .types import Camera, Frames, RenderScene, Style, Views
+
+CHUNK_PIXELS = 8_000_000  # pixels in flight; about 30 bytes each
+
+
+class Renderer:
+    """One scene at a time, any number of views of it.
+
+    device: ``cpu``, ``cuda``, ``vulkan`` or ``auto`` (a GPU if there is one)
+    """
+
+    def __init__(self, device: str = "auto", style: Style | None = None) -> None:
+        self.style = style or Style()
+        self.backend: Backend = start(device)
+        # Only now: the kernels import taichi, which costs a second.
+        from .kernels import finish, geometry, shading
+
+        self._geometry = geometry
+        self._shading = shading.shading_kernels(self.style)
+        self._finish = finish.finish_kernels(self.style)
+        table = np.round(to_encoded(np.arange(4096) / 4095.0) * 255.0).astype(np.uint32)
+        self._table = self.backend.upload(table)
+        self._buffers: dict[str, Any] = {}
+        self._scene: Prepared | None = None
+
+    def load(self, scene: RenderScene) -> None:
+        """Make ``scene`` the one that is drawn. Raises ValueError for a scene that cannot be."""
+        prepared = prepare(scene, self.style)
+        up = self.backend.upload
+        self._arrays = {
+            name: up(getattr(prepared, name))
+            for name in (
+                "vertices",
+                "normals",
+                "rest",
+                "rest_normals",
+                "faces",
+                "color",
+                "info",
+                "clusters",
+                "sphere",
+                "surface_object",
+            )
+        }
+        self._arrays["joints"] = up(scene.joints.astype(np.int32))
+        self._arrays["weights"] = up(scene.weights.astype(np.float32))
+        light = scene.light
+        horizon, zenith = to_linear(np.array(light.backdrop))
+        packed = np.concatenate([light.sun, light.sun_color, light.sky, light.ground, horizon, zenith])
+        if not np.isfinite(packed).all():
+            raise ValueError("Light: not all numbers are finite")
+        self._arrays["light"] = up(packed.astype(np.float32))
+        self._walls = scene.wall_count
+        self._palette_size = int(scene.joints.max()) + 1 if len(scene.joints) else 0
+        self._scene = prepared
+
+    def render(
+        self, palettes: NDArray[np.float32], views: Views, size: tuple[int, int], ids: bool = False
+    ) -> Frames:
+        """Draw every view.
+
+        palettes: float32 [M, P, 3, 4], world-from-bind matrices of each moment; size: (width, height)
+        returns colours uint8 [N, H, W, 3], and object ids int32 [N, H, W] if asked for
+        """
+        if self._scene is None:
+            raise RuntimeError("load a scene before rendering")
+        width, height = int(size[0]), int(size[1])
+        view, moment, hidden = self._check(palettes, views, width, height)
+        count = len(moment)
+        color = np.empty((count, height, width, 3), np.uint8)
+        objects = np.empty((count, height, width), np.int32) if ids else None
+        chunk = max(1, CHUNK_PIXELS // (width * height))
+        for begin in range(0, count, chunk):
+            part = slice(begin, min(count, begin + chunk))
+            used, local = np.unique(moment[part], return_inverse=True)
+            self._move(palettes[used] if len(palettes) else palettes)
+            self._draw(
+                view[part],
+                local.reshape(-1).astype(np.int32),
+                hidden[part],
+                (width, height),
+                color[part],
+                objects[part] if objects is not None else None,
+            )
+        return Frames(color, objects)
+
+    def _check(
+        self, palettes: NDArray[np.float32], views: Views, width: int, height: int
+    ) -> tuple[NDArray[np.float32], NDArray[np.int32], NDArray[np.int32]]:
+        """Views packed for the kernels, or ValueError."""
+        if width < 1 or height < 1:
+            raise ValueError(f"size: {width} x {height} has no pixels")
+        if palettes.ndim != 4 or palettes.shape[2:] != (3, 4) or palettes.shape[1] < self._palette_size:
+            raise ValueError(f"palettes: expected [M, {self._palette_size} or more, 3, 4], got {palettes.shape}")
+        if not np.isfinite(palettes).all():
+            raise ValueError("palettes: not all numbers are finite")
+        moment = np.asarray(views.moment, np.int32)
+        count = len(moment)
+        if count and not (0 <= moment.min() and moment.max() < max(len(palettes), 1)):
+            raise ValueError("Views.moment: an index is outside the palettes")
+        hidden = np.asarray(views.hidden)
+        if hidden.shape != (count, self._walls):
+            raise ValueError(f"Views.hidden: expected {(count, self._walls)}, got {hidden.shape}")
+        hidden = np.concatenate([hidden, np.zeros((count, 1), hidden.dtype)], axis=1)
+        return pack_views(views.camera, count, width, height), moment, hidden.astype(np.int32)
+
+    def _buffer(self, name: str, shape: tuple[int, ...], dtype: type) -> Any:
+        """A buffer at least as large as asked for (flat ones) or of that shape, kept for the next time."""
+        have = self._buffers.get(name)
+        enough = have is not None and (
+            have.shape[0] >= shape[0] and tuple(have.shape[1:]) == tuple(shape[1:])
+        )
+        if not enough:
+            have = self._buffers[name] = self.backend.buffer(shape, dtype)
+        return have
+
+    def _move(self, palettes: NDArray[np.float32]) -> None:
+        """Skin all moments of a chunk."""
+        scene, a = self._scene, self._arrays
+        assert scene is not None
+        moments, vertices = max(len(palettes), 1), max(len(scene.rest), 1)
+        self._position = self._buffer("position", (moments, vertices, 3), np.float32)
+        self._normal = self._buffer("normal", (moments, vertices, 3), np.float32)
+        clusters = len(scene.clusters) - scene.moving_first
+        self._ball = self._buffer("ball", (moments, max(clusters, 1), 4), np.float32)
+        if clusters and len(palettes):
+            palette = self.backend.upload(palettes.astype(np.float32))
+            self._geometry.skin(
+                palette,
+                a["rest"],
+                a["rest_normals"],
+                a["joints"],
+                a["weights"],
+                len(palettes),
+                self._position,
+                self._normal,
+            )
+            self._geometry.bound(
+                a["faces"],
+                a["clusters"],
+                scene.moving_first,
+                len(scene.vertices),
+                len(palettes),
+                self._position,
+                self._ball,
+            )
+
+    def _draw(
+        self,
+        view: NDArray[np.float32],
+        moment: NDArray[np.int32],
+        hidden: NDArray[np.int32],
+        size: tuple[int, int],
+        color: NDArray[np.uint8],
+        objects: NDArray[np.int32] | None,
+    ) -> None:
+        scene, a, up = self._scene, self._arrays, self.backend.upload
+        assert scene is not None
+        width, height = size
+        views = len(view)
+        pixels = views * width * height
+        vis = self._buffer("vis", (pixels,), np.uint64)
+        picture = self._buffer("picture", (pixels,), np.uint32)
+        edge = self._buffer("edge", (pixels,), np.uint32)
+        view_, moment_, hidden_ = up(view), up(moment), up(hidden)
+        bands = 1 if views >= 2 * self.backend.threads else min(height, 2 * self.backend.threads)
+        self._geometry.raster_serial(
+            view_,
+            moment_,
+            hidden_,
+            a["vertices"],
+            self._position,
+            a["faces"],
+            a["clusters"],
+            a["sphere"],
+            self._ball,
+            scene.moving_first,
+            len(scene.vertices),
+            vis,
+            views,
+            width,
+            height,
+            bands,
+        )
+        self._shading.rows(
+            view_,
+            moment_,
+            a["vertices"],
+            a["normals"],
+            self._position,
+            self._normal,
+            a["faces"],
+            a["color"],
+            a["info"],
+            len(scene.color) - int((scene.info[:, 1] >> 9 & 1).sum()),
+            len(scene.vertices),
+            a["light"],
+            self._table,
+            vis,
+            picture,
+            edge,
+            views,
+            width,
+            height,
+        )
+        self._finish.bytes_out(picture, color.reshape(-1), pixels)
+        if objects is not None:
+            self._finish.object_ids(edge, a["surface_object"], objects.reshape(-1), pixels)
+
+
+def pack_views(camera: Camera, count: int, width: int, height: int) -> NDArray[np.float32]:
+    """Cameras as the kernels read them, float32 [N, 16]. Raises ValueError.
+
+    Position, right, up, forward, focal lengths in pixels (x, y), half size in pixels (x, y).
+    """
+    arrays = {
+        "position": (np.asarray(camera.position, np.float32), (count, 3)),
+        "axes": (np.asarray(camera.axes, np.float32), (count, 3, 3)),
+        "focal": (np.asarray(camera.focal, np.float32), (count,)),
+    }
+    for name, (array, shape) in arrays.items():
+        if array.shape != shape:
+            raise ValueError(f"Camera.{name}: expected {shape}, got {array.shape}")
+        if not np.isfinite(array).all():
+            raise ValueError(f"Camera.{name}: not all numbers are finite")
+    focal = arrays["focal"][0]
+    if (focal <= 0).any() or not min(camera.sensor) > 0:
+        raise ValueError("Camera: focal lengths and sensor must be positive")
+    out = np.empty((count, 16), np.float32)
+    out[:, 0:3] = arrays["position"][0]
+    out[:, 3:12] = arrays["axes"][0].reshape(count, 9)
+    out[:, 12] = focal / np.float32(camera.sensor[0]) * np.float32(width)
+    out[:, 13] = focal / np.float32(camera.sensor[1]) * np.float32(height)
+    out[:, 14] = width / 2
+    out[:, 15] = height / 2
+    return out

@@ -54,6 +54,17 @@ def parse(source: Source, report: Report | None = None) -> tuple[ast.Script, Rep
     return ast.Script(source, tuple(statements), Span(source, 0, len(source.text))), report
 
 
+def parse_definition(source: Source, kind: str, name: str, report: Report) -> ast.Definition | None:
+    """One definition of a file, leaving the rest of the file unread."""
+    head = re.compile(rf"{kind}[ \t]+{re.escape(name)}(?![\w.-])")
+    reader = _Reader(source, report)
+    for line in cut(source, report):
+        if head.match(source.text, line.start):
+            statement = reader.statement(line)
+            return statement if isinstance(statement, ast.Definition) else None
+    return None
+
+
 def _with_cameras(story: ast.StoryNode, cameras: ast.StoryNode) -> ast.StoryNode:
     """The story line with further camera lines that stand directly below it."""
     span = story.span.to(cameras.span)

@@ -1,0 +1,116 @@
+"""Finds definitions by name: the script's own first, then those of files it uses, then the library's.
+
+The library's files are only looked through for the heads of definitions; a definition is parsed when
+somebody asks for it. Mistakes in a definition go to the report the catalog was made with, at their
+place in the file they are in. Importing this module reads nothing.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from importlib import import_module
+from pathlib import Path
+
+from ..lang import ast
+from ..lang.definitions.types import DefinitionBase
+from ..lang.diagnostics import Report
+from ..lang.files import used_scripts
+from ..lang.parse import parse_definition
+from ..lang.source import Source
+
+KINDS = ("set", "prop", "cast", "action")
+LIBRARY = Path(__file__).parent
+FOLDERS = {"set": "sets", "prop": "props", "cast": "cast", "action": "actions"}
+
+_HEAD = re.compile(r"^[ \t\ufeff]*(set|prop|cast|action)[ \t]+([^\W\d][\w-]*)", re.MULTILINE)
+
+
+class Catalog:
+    """Definitions of every kind, by name."""
+
+    def __init__(self, report: Report | None = None, library: Path = LIBRARY) -> None:
+        self.report = Report() if report is None else report
+        self._library = library
+        self._own: dict[tuple[str, str], ast.Definition] = {}
+        self._index: dict[str, dict[str, Source]] = {}
+        self._read: dict[tuple[str, str], DefinitionBase | None] = {}
+
+    @classmethod
+    def for_script(cls, script: ast.Script, report: Report) -> Catalog:
+        """The catalog a script sees. Its own definitions are all read, so that all their mistakes show."""
+        catalog = cls(report)
+        for each in (script, *used_scripts(script, report)):
+            catalog._add(each)
+        for kind, name in catalog._own:
+            catalog.get(kind, name)
+        return catalog
+
+    def names(self, kind: str) -> tuple[str, ...]:
+        """All names of a kind: own ones first, then the library's, each in order of the alphabet."""
+        own = sorted(name for k, name in self._own if k == kind)
+        return (*own, *(name for name in sorted(self._scan(kind)) if (kind, name) not in self._own))
+
+    def get(self, kind: str, name: str) -> DefinitionBase | None:
+        """The definition, read; None where there is none or it could not be read (then it is reported)."""
+        key = (kind, name)
+        if key not in self._read:
+            self._read[key] = None  # a definition that needs itself finds nothing
+            definition = self._definition(kind, name)
+            if definition is not None:
+                self._read[key] = _reader(kind)(definition, self.report)
+        return self._read[key]
+
+    def source_of(self, kind: str, name: str) -> Source | None:
+        """The source a definition comes from."""
+        if (kind, name) in self._own:
+            return self._own[kind, name].span.source
+        return self._scan(kind).get(name)
+
+    # -- finding ---------------------------------------------------------------------
+
+    def _add(self, script: ast.Script) -> None:
+        """Take the definitions of a script; a name that is taken already in the same file is an error."""
+        for statement in script.statements:
+            if isinstance(statement, ast.FileDefinition):
+                self.report.error(
+                    "VDS017", statement.path.span, label="definitions from other programs' files are not read yet",
+                    help=f"write the {statement.kind} in text, or take one of the library's",
+                )  # fmt: skip
+            if not isinstance(statement, ast.Definition):
+                continue
+            key = (statement.kind, statement.name.text)
+            first = self._own.get(key)
+            if first is None:
+                self._own[key] = statement
+            elif first.span.source is statement.span.source:
+                self.report.error(
+                    "VDS018", statement.name.span, label=f"the {key[0]} `{key[1]}` is defined twice",
+                    notes=[(first.name.span, "first here")],
+                )  # fmt: skip
+
+    def _scan(self, kind: str) -> dict[str, Source]:
+        """Names of a kind in the library, with the file each is in."""
+        if kind not in self._index:
+            found: dict[str, Source] = {}
+            for path in sorted((self._library / FOLDERS[kind]).glob("*.vds")):
+                source = Source(str(path), path.read_text(encoding="utf-8"))
+                for match in _HEAD.finditer(source.text):
+                    if match.group(1) == kind:
+                        found.setdefault(match.group(2), source)
+            self._index[kind] = found
+        return self._index[kind]
+
+    def _definition(self, kind: str, name: str) -> ast.Definition | None:
+        if (kind, name) in self._own:
+            return self._own[kind, name]
+        source = self._scan(kind).get(name)
+        return None if source is None else parse_definition(source, kind, name, self.report)
+
+
+def _reader(kind: str) -> Callable[[ast.Definition, Report], DefinitionBase | None]:
+    """``read_set`` and its fellows, imported when first needed."""
+    reader: Callable[[ast.Definition, Report], DefinitionBase | None] = getattr(
+        import_module(f"vdsl.lang.definitions.{kind}"), f"read_{kind}"
+    )
+    return reader

@@ -76,7 +76,9 @@ _Arrays = tuple[NDArray[np.float64], NDArray[np.int64], NDArray[np.float64]]
 
 
 def _sharp_box(half: NDArray[np.float64]) -> _Arrays:
-    vertices, normals, faces = [], [], []
+    vertices: list[NDArray[np.float64]] = []
+    normals: list[NDArray[np.float64]] = []
+    faces: list[tuple[int, ...]] = []
     for axis, sign, u, v in _SIDES:
         start = len(vertices)
         for a, b in ((-1, -1), (1, -1), (1, 1), (-1, 1)):
@@ -90,7 +92,9 @@ def _sharp_box(half: NDArray[np.float64]) -> _Arrays:
 
 def _bevelled_box(half: NDArray[np.float64], radius: float) -> _Arrays:
     """Six flat sides, twelve bevels, eight corners; the bevels take the sides' normals and look round."""
-    vertices, normals, faces = [], [], []
+    vertices: list[NDArray[np.float64]] = []
+    normals: list[NDArray[np.float64]] = []
+    faces: list[tuple[int, ...]] = []
     index: dict[tuple[int, tuple[int, int, int]], int] = {}
     for axis in range(3):
         for corner in np.ndindex(2, 2, 2):
@@ -112,17 +116,17 @@ def _bevelled_box(half: NDArray[np.float64], radius: float) -> _Arrays:
     for axis, sign, u, v in _SIDES:
         ring = []
         for a, b in ((0, 0), (1, 0), (1, 1), (0, 1)):
-            corner = [0, 0, 0]
-            corner[axis], corner[u], corner[v] = (sign + 1) // 2, a, b
-            ring.append(index[axis, (corner[0], corner[1], corner[2])])
+            bit = [0, 0, 0]
+            bit[axis], bit[u], bit[v] = (sign + 1) // 2, a, b
+            ring.append(index[axis, (bit[0], bit[1], bit[2])])
         add(*ring)
     for axis in range(3):  # bevels run along this axis, between the sides u and v
         u, v = (axis + 1) % 3, (axis + 2) % 3
-        for a in bits:
-            for b in bits:
+        for i in bits:
+            for j in bits:
                 low, high = [0, 0, 0], [0, 0, 0]
-                low[u] = high[u] = a
-                low[v] = high[v] = b
+                low[u] = high[u] = i
+                low[v] = high[v] = j
                 high[axis] = 1
                 k0, k1 = (low[0], low[1], low[2]), (high[0], high[1], high[2])
                 add(index[u, k0], index[u, k1], index[v, k1], index[v, k0])
@@ -138,7 +142,9 @@ def _round_box(half: NDArray[np.float64], radius: float, steps: int) -> _Arrays:
     slope = np.concatenate([bend, -bend[::-1]])
     core = np.concatenate([-np.ones(steps), np.ones(steps)])
     n = 2 * steps
-    vertices, normals, faces = [], [], []
+    vertices: list[NDArray[np.float64]] = []
+    normals: list[NDArray[np.float64]] = []
+    faces: list[NDArray[np.int64]] = []
     for axis, sign, u, v in _SIDES:
         direction = np.zeros((n, n, 3))
         centre = np.zeros((n, n, 3))
@@ -245,11 +251,8 @@ def cone(
     profile: list[Point2] = []
     for radius, z, inward in ((low, 0.0, 1.0), (high, height, -1.0)):
         bevel = min(soft, radius * 0.9)
-        rim = [
-            (radius - bevel, z),
-            (radius - 0.29 * bevel, z + inward * 0.29 * bevel),
-            (radius, z + inward * bevel),
-        ]
+        start, middle, end = radius - bevel, radius - 0.29 * bevel, z + inward * bevel
+        rim = [(start, z), (middle, z + inward * 0.29 * bevel), (radius, end)]
         corner: list[Point2] = list(rim) if bevel > 1e-6 else [(radius, z)]
         profile += corner if inward > 0 else corner[::-1]
     crease = math.radians(50.0) if soft > 1e-6 else CREASE
@@ -284,7 +287,7 @@ def sphere(
 def _lumps(direction: NDArray[np.float64]) -> NDArray[np.float64]:
     """A fixed, smooth pattern of bumps on the unit sphere, about -1..1: [V, 3] -> [V]."""
     waves = ((5.1, 2.3, -3.7, 0.4), (-2.9, 6.1, 1.7, 2.1), (3.3, -4.9, 5.3, 4.4))
-    return sum(np.sin(direction @ np.array(w[:3]) + w[3]) for w in waves) / 3.0  # type: ignore[return-value]
+    return np.mean([np.sin(direction @ np.array(w[:3]) + w[3]) for w in waves], axis=0)
 
 
 def _smooth_normals(vertices: NDArray[np.float64], faces: NDArray[np.integer]) -> NDArray[np.float64]:

@@ -1,0 +1,59 @@
+"""``take-<k>.json``: a take's camera, seven numbers a frame, and where its subject was (docs/output.md)."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from .documents import TRACK_DECIMALS, numbers, rounded, rows, write_document
+from .types import Build, BuiltTake
+from .video import take_paths
+
+SCHEMA = "vds.track/1"
+
+
+def write_tracks(folder: Path, build: Build) -> None:
+    """Write the track of every take of a build into its folder."""
+    for built in build.shots:
+        for take in built.takes:
+            _, _, path = take_paths(folder, built.shot.id, take.rank)
+            path.parent.mkdir(parents=True, exist_ok=True)
+            write_document(
+                path, track_document(take, built.shot.id, build.storyboard.fps, build.storyboard.rig)
+            )
+
+
+def track_document(take: BuiltTake, shot: str, fps: tuple[int, int], rig: str) -> dict[str, Any]:
+    """The document as plain values: metres, degrees, millimetres."""
+    camera, track = take.camera, take.camera.track
+    subject = take.subject
+    return {
+        "schema": SCHEMA,
+        "shot": shot,
+        "rank": take.rank,
+        "proposal": camera.index,
+        "fps": list(fps),
+        "frames": len(track.focal),
+        "rig": rig,
+        "sensor_mm": [rounded(x, TRACK_DECIMALS) for x in track.sensor],
+        "movement": camera.movement,
+        "scale": camera.scale,
+        "angle": camera.angle,
+        "params": numbers(camera.params, 12),
+        "camera": {
+            "position": rows(track.position),
+            "rotation_deg": rows(np.rad2deg(track.rotation)),
+            "focal_mm": rows(track.focal),
+            "look_at": rows(track.look_at),
+        },
+        "subject": None
+        if subject is None
+        else {
+            "name": subject.name,
+            "height": rounded(subject.height, TRACK_DECIMALS),
+            "position": rows(subject.position),
+        },
+        "measures": numbers(camera.measures),
+    }

@@ -1,0 +1,180 @@
+"""The films: one of every take, and the animatic of the best takes in order.
+
+Frames are streamed; nothing here holds more than a transition's worth of them. Shots that join by
+cuts go into the animatic as they were encoded; only shots in a transition are encoded again.
+"""
+
+from __future__ import annotations
+
+import shutil
+import tempfile
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from runtime.video import VideoError, VideoWriter, join_videos, read_video, video_info, write_video
+
+from .burnin import BurnIn, burn
+from .folder import write_bytes
+from .timeline import OVERLAPPING, Placed, place_shots
+from .types import Build, TakeMedia
+
+#: Where in a take the contact sheet's keyframes are; the middle one is the poster.
+KEY_MOMENTS = (0.04, 0.5, 0.96)
+KEY_WIDTH = 640
+
+
+def take_paths(folder: Path, shot: str, rank: int) -> tuple[Path, Path, Path]:
+    """Video, poster and track of a take in a build's folder."""
+    base = folder / "shots" / shot
+    return base / f"take-{rank}.mp4", base / f"take-{rank}.jpg", base / f"take-{rank}.json"
+
+
+def write_take(
+    folder: Path,
+    shot: str,
+    rank: int,
+    frames: Iterable[NDArray[np.uint8]],
+    count: int,
+    fps: tuple[int, int],
+    strip: BurnIn | None = None,
+) -> TakeMedia:
+    """Encode a take and its poster.
+
+    frames: ``count`` pictures uint8 [H, W, 3]; strip: what to write on every frame, if anything
+    """
+    video, poster, _ = take_paths(folder, shot, rank)
+    video.parent.mkdir(parents=True, exist_ok=True)
+    wanted = _key_frames(count)
+    keys: dict[int, NDArray[np.uint8]] = {}
+    writer: VideoWriter | None = None
+    try:
+        for i, frame in enumerate(frames):
+            picture = burn(frame, strip, i) if strip is not None else frame
+            if writer is None:
+                writer = VideoWriter(video, (picture.shape[1], picture.shape[0]), fps)
+            writer.write(picture)
+            if i in wanted:
+                keys[i] = _reduced(frame)
+            if i == wanted[1]:
+                write_poster(poster, picture)
+        if writer is None or writer.frames != count:
+            raise ValueError(
+                f"{shot} take {rank}: expected {count} frames, got {writer.frames if writer else 0}"
+            )
+        writer.close()
+    except BaseException:
+        if writer is not None:
+            writer.discard()
+        raise
+    return TakeMedia(video, poster, count, tuple(keys[i] for i in wanted))
+
+
+def read_take(video: Path, poster: Path) -> TakeMedia:
+    """The media of a take written earlier (by a cache, say); decodes it for the keyframes."""
+    _, _, count = video_info(video)
+    wanted = _key_frames(count)
+    keys = {i: _reduced(frame) for i, frame in enumerate(read_video(video)) if i in wanted}
+    if any(i not in keys for i in wanted):
+        raise VideoError(f"cannot read {video}: it ends early")
+    return TakeMedia(video, poster, count, tuple(keys[i] for i in wanted))
+
+
+def write_poster(path: Path, frame: NDArray[np.uint8]) -> None:
+    """A JPEG of one frame, uint8 [H, W, 3] sRGB."""
+    done, data = cv2.imencode(".jpg", cv2.cvtColor(frame, cv2.COLOR_RGB2BGR), [cv2.IMWRITE_JPEG_QUALITY, 90])
+    if not done:
+        raise VideoError(f"cannot write {path}: the picture could not be encoded")
+    write_bytes(path, data.tobytes())
+
+
+def write_animatic(path: Path, build: Build) -> None:
+    """The best take of every shot, joined as the script says. Writes nothing where no shot has a take."""
+    shown = build.shown
+    if not shown:
+        return
+    fps = build.storyboard.fps
+    videos = [s.takes[0].media.video for s in shown]
+    placed = place_shots([s.frames for s in shown], [s.transition for s in shown], fps)
+    scratch = Path(tempfile.mkdtemp(prefix=".animatic-", dir=path.parent))
+    try:
+        parts = []
+        for number, run in enumerate(_runs(placed)):
+            if len(run) == 1 and _untouched(placed[run[0]]):
+                parts.append(videos[run[0]])
+                continue
+            part = scratch / f"{number}.mp4"
+            write_video(part, film_frames_of([(videos[i], placed[i]) for i in run]), fps)
+            parts.append(part)
+        try:
+            join_videos(path, parts)
+        except VideoError as error:
+            if error.errno:  # the disk's fault, not the parts'
+                raise
+            write_video(path, film_frames_of(list(zip(videos, placed, strict=True))), fps)
+    finally:
+        shutil.rmtree(scratch, ignore_errors=True)
+
+
+def film_frames_of(shots: list[tuple[Path, Placed]]) -> Iterator[NDArray[np.uint8]]:
+    """The frames of consecutive shots with their transitions drawn."""
+    tail: list[NDArray[np.uint8]] = []
+    for video, place in shots:
+        held: list[NDArray[np.uint8]] = []
+        keep_from = place.frames - (place.leave_frames if place.leave in OVERLAPPING else 0)
+        for i, frame in enumerate(read_video(video)):
+            picture = frame
+            if i < place.enter_frames:
+                share = (i + 1) / (place.enter_frames + 1)
+                under = tail[i] if place.enter in OVERLAPPING and tail else np.zeros_like(frame)
+                picture = wipe(under, frame, share) if place.enter == "wipe" else mix(under, frame, share)
+            if i >= keep_from:
+                held.append(picture)
+                continue
+            if place.leave == "fade-out" and i >= place.frames - place.leave_frames:
+                share = (place.frames - i) / (place.leave_frames + 1)
+                picture = mix(np.zeros_like(picture), picture, share)
+            yield picture
+        tail = held
+    yield from tail
+
+
+def mix(first: NDArray[np.uint8], second: NDArray[np.uint8], share: float) -> NDArray[np.uint8]:
+    """``share`` of the second picture over the first."""
+    return np.asarray(cv2.addWeighted(first, 1 - share, second, share, 0), np.uint8)
+
+
+def wipe(first: NDArray[np.uint8], second: NDArray[np.uint8], share: float) -> NDArray[np.uint8]:
+    """The second picture drawn over the first from the left, up to ``share`` of the width."""
+    edge = round(first.shape[1] * share)
+    return np.concatenate([second[:, :edge], first[:, edge:]], axis=1)
+
+
+def _runs(placed: tuple[Placed, ...]) -> list[list[int]]:
+    """Indices of shots grouped so that shots seen at once are together."""
+    runs: list[list[int]] = []
+    for i, place in enumerate(placed):
+        if runs and place.enter in OVERLAPPING:
+            runs[-1].append(i)
+        else:
+            runs.append([i])
+    return runs
+
+
+def _untouched(place: Placed) -> bool:
+    return place.enter == "cut" and place.leave == "cut"
+
+
+def _key_frames(count: int) -> tuple[int, ...]:
+    return tuple(round(q * (count - 1)) for q in KEY_MOMENTS)
+
+
+def _reduced(frame: NDArray[np.uint8]) -> NDArray[np.uint8]:
+    height, width = frame.shape[:2]
+    if width <= KEY_WIDTH:
+        return frame.copy()
+    size = (KEY_WIDTH, max(1, round(height * KEY_WIDTH / width)))
+    return np.asarray(cv2.resize(frame, size, interpolation=cv2.INTER_AREA), np.uint8)

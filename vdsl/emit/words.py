@@ -1,0 +1,46 @@
+"""Shots in words, and moments as timecodes: what people read on the page, the sheet and the strip."""
+
+from __future__ import annotations
+
+from ..lang.ir import Beat, Shot, StoryLine
+from .types import BuiltShot
+
+
+def beat_words(beat: Beat) -> str:
+    """``anna give cup to ben``."""
+    words = [beat.character, beat.action]
+    if beat.target is not None:
+        words.append(beat.target.written)
+    if beat.second is not None:
+        words += ["to", beat.second.written]
+    return " ".join(words)
+
+
+def line_words(line: StoryLine, scene: str) -> str:
+    """What happens, in the script's own words; the scene's name for an establishing shot."""
+    return " + ".join(beat_words(b) for b in line.beats) or f"{scene}, establishing"
+
+
+def asked_words(shot: Shot) -> str:
+    """``follow full eye-level``, with ``*`` where all and ``a|b`` where several may be proposed."""
+    return " ".join("|".join(w) if len(w) <= 3 else "*" for w in (shot.movements, shot.scales, shot.angles))
+
+
+def camera_words(built: BuiltShot) -> str:
+    """The best take's movement, size and angle; what was asked where there is no take."""
+    if not built.takes:
+        return asked_words(built.shot)
+    camera = built.takes[0].camera
+    return f"{camera.movement} {camera.scale} {camera.angle}"
+
+
+def timecode(frame: int, fps: tuple[int, int]) -> str:
+    """``HH:MM:SS:FF`` of a frame, non-drop, counted at the rounded rate as editing software does."""
+    rate = max(1, round(fps[0] / fps[1]))
+    seconds, rest = divmod(frame, rate)
+    return f"{seconds // 3600:02d}:{seconds // 60 % 60:02d}:{seconds % 60:02d}:{rest:02d}"
+
+
+def seconds_words(frames: int, fps: tuple[int, int]) -> str:
+    """``3.2 s``."""
+    return f"{frames * fps[1] / fps[0]:.1f} s"

@@ -33,6 +33,7 @@ class Prepared:
     clusters: int32 [C, 4]: first triangle, count, cull, wall; moving_first: index of the first skinned one
     sphere: float32 [C, 4], bounds of the static ones
     surface_object: int32 [S]: object id of each surface, a surface being one part of one object
+    moving_surface: index of the first skinned surface; static_faces: number of static triangles
     """
 
     vertices: NDArray[np.float32]
@@ -46,6 +47,8 @@ class Prepared:
     moving_first: int
     sphere: NDArray[np.float32]
     surface_object: NDArray[np.int32]
+    moving_surface: int
+    static_faces: int
 
 
 def to_linear(color: NDArray[np.floating]) -> NDArray[np.float64]:
@@ -174,7 +177,8 @@ def prepare(scene: RenderScene, style: Style) -> Prepared:
 
     object_ids = np.concatenate([scene.static_object[order], scene.skinned_object[moving_order]])
     parts = np.concatenate([static.parts, skinned.parts])
-    surfaces, surface = np.unique(np.stack([object_ids, parts], axis=1), axis=0, return_inverse=True)
+    moves = np.repeat([0, 1], [len(order), len(moving_order)])
+    surfaces, surface = np.unique(np.stack([moves, object_ids, parts], axis=1), axis=0, return_inverse=True)
     if len(surfaces) >= 0xFFFF:
         raise ValueError(f"RenderScene: {len(surfaces)} parts of objects; 65534 is the most")
     flags = np.concatenate([_flat(static) * FLAT, _flat(skinned) * FLAT + MOVES]).astype(np.int32)
@@ -191,7 +195,9 @@ def prepare(scene: RenderScene, style: Style) -> Prepared:
         clusters=np.concatenate([clusters, moving_clusters]).astype(np.int32),
         moving_first=len(clusters),
         sphere=_spheres(static, clusters),
-        surface_object=surfaces[:, 0].astype(np.int32),
+        surface_object=surfaces[:, 1].astype(np.int32),
+        moving_surface=int((surfaces[:, 0] == 0).sum()),
+        static_faces=len(order),
     )
 
 

@@ -35,6 +35,7 @@ class Renderer:
         self._finish = finish.finish_kernels(self.style)
         table = np.round(to_encoded(np.arange(4096) / 4095.0) * 255.0).astype(np.uint32)
         self._table = self.backend.upload(table)
+        self._linear = self.backend.upload(to_linear(np.arange(256) / 255.0).astype(np.float32))
         self._buffers: dict[str, Any] = {}
         self._scene: Prepared | None = None
 
@@ -207,7 +208,7 @@ class Renderer:
             a["faces"],
             a["color"],
             a["info"],
-            len(scene.color) - int((scene.info[:, 1] >> 9 & 1).sum()),
+            scene.static_faces,
             len(scene.vertices),
             a["light"],
             self._table,
@@ -218,7 +219,26 @@ class Renderer:
             width,
             height,
         )
-        self._finish.bytes_out(picture, color.reshape(-1), pixels)
+        if self.style.outline:
+            inked = self._buffer("inked", (pixels,), np.uint32)
+            self._finish.ink_rows(
+                view_,
+                picture,
+                edge,
+                vis,
+                a["surface_object"],
+                scene.moving_surface,
+                self._linear,
+                self._table,
+                inked,
+                views,
+                width,
+                height,
+            )
+            picture = inked
+        self._finish.smooth_rows(
+            picture, self._linear, self._table, color.reshape(-1), views, width, height
+        )
         if objects is not None:
             self._finish.object_ids(edge, a["surface_object"], objects.reshape(-1), pixels)
 

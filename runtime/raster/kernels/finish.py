@@ -1,4 +1,7 @@
-"""Finishing: ink lines from the edge buffer, then a smoothing of stair-steps, then bytes."""
+"""Finishing: ink lines from the edge buffer, then a smoothing of stair-steps, then bytes.
+
+Pictures in between are packed sRGB with the luma in the fourth byte.
+"""
 
 from functools import lru_cache
 from types import SimpleNamespace
@@ -6,27 +9,252 @@ from types import SimpleNamespace
 import taichi as ti
 
 from ..types import Style
-from .geometry import f1, i1, u32s, u64s, vec3
+from .geometry import f1, f2, i1, u32s, u64s, vec3
+from .shading import NOTHING, encode, unpack_normal
 
 u8s = ti.types.ndarray(ti.u8, ndim=1)
+i32s = ti.types.ndarray(ti.i32, ndim=1)
+SEARCH = 12  # pixels looked along an edge, either way
+
+
+@ti.func
+def decode(c, table: ti.template()):
+    return vec3(
+        table[ti.cast(c & 0xFF, ti.i32)],
+        table[ti.cast((c >> 8) & 0xFF, ti.i32)],
+        table[ti.cast((c >> 16) & 0xFF, ti.i32)],
+    )
+
+
+@ti.func
+def nearness(vis: ti.template(), at):
+    """1/z of a pixel, 0 for the backdrop."""
+    return ti.bit_cast(ti.cast(vis[at] >> 32, ti.u32), ti.f32)
+
+
+@ti.func
+def bend(e, f):
+    """Cosine between two packed normals, 1 when they are obviously close."""
+    out = 1.0
+    if (e ^ f) & 0xFFFF:
+        ex, ey = ti.cast((e >> 8) & 0xFF, ti.i32), ti.cast(e & 0xFF, ti.i32)
+        fx, fy = ti.cast((f >> 8) & 0xFF, ti.i32), ti.cast(f & 0xFF, ti.i32)
+        if ti.abs(ex - fx) + ti.abs(ey - fy) > 30:
+            out = unpack_normal(e).dot(unpack_normal(f))
+    return out
+
+
+@ti.func
+def line_weight(e, f, w, w_f, w_back, first_moving, owner: ti.template()):
+    """How strongly the border from a pixel (e, 1/z = w) to a neighbour (f, w_f) is inked on the pixel's side.
+
+    w_back: 1/z behind the pixel, from which its surface is extended to the neighbour
+    """
+    out = 0.0
+    s = ti.cast(e >> 16, ti.i32)
+    s_f = ti.cast(f >> 16, ti.i32)
+    moves = s >= first_moving
+    # a gap in metres, where this surface would be if it went on
+    gap = (2.0 * w - w_back - w_f) / (w * w)
+    allowed = 0.035 + 0.012 / w
+    if s != s_f:
+        if f == ti.u32(NOTHING):
+            out = 1.0 if moves else 0.6
+        elif owner[s] != owner[s_f]:
+            if (w > w_f and ti.abs(w - w_f) > 1e-3 * w * w) or (ti.abs(w - w_f) <= 1e-3 * w * w and s > s_f):
+                out = 1.0 if moves else (0.6 if gap > allowed else 0.45)
+        elif gap > allowed:
+            out = 0.95 if moves else 0.5
+        elif s > s_f and gap > -allowed:
+            out = 0.7 if moves else 0.35
+    elif gap > allowed and w > w_f:
+        out = 0.8 if moves else 0.45
+    else:
+        turn = bend(e, f)
+        if turn < (0.35 if moves else 0.75) and gap > -allowed:
+            out = 0.45 if moves else 0.3
+    return out
 
 
 @lru_cache(maxsize=8)
 def finish_kernels(style: Style) -> SimpleNamespace:
     """The finishing kernels of a style."""
 
-    @ti.kernel
-    def bytes_out(picture: u32s, out: u8s, count: ti.i32):
-        for i in range(count):
-            c = picture[i]
-            out[3 * i] = ti.cast(c & 0xFF, ti.u8)
-            out[3 * i + 1] = ti.cast((c >> 8) & 0xFF, ti.u8)
-            out[3 * i + 2] = ti.cast((c >> 16) & 0xFF, ti.u8)
+    @ti.func
+    def inked(
+        x,
+        y,
+        at,
+        width,
+        height,
+        weight,
+        first_moving,
+        picture: ti.template(),
+        edge: ti.template(),
+        vis: ti.template(),
+        owner: ti.template(),
+        linear: ti.template(),
+        table: ti.template(),
+    ):
+        """The picture's pixel with its share of ink. weight: width in pixels of a line 1 m away."""
+        out = picture[at]
+        e = edge[at]
+        if e != ti.u32(NOTHING):
+            left = at - 1 if x > 0 else at
+            right = at + 1 if x < width - 1 else at
+            above = at - width if y > 0 else at
+            below = at + width if y < height - 1 else at
+            w = nearness(vis, at)
+            moves = ti.cast(e >> 16, ti.i32) >= first_moving
+            broad = ti.min(ti.max(weight * w, 1.0), ti.max(1.0, height / 360.0))
+            ring = ti.Vector([left, right, above, below])
+            ink = 0.0
+            for k in ti.static(range(4)):
+                q = ring[k]
+                back = ring[k ^ 1]
+                w_q = nearness(vis, q)
+                w_back = nearness(vis, back)
+                f = edge[q]
+                if back == at or ((e ^ edge[back]) >> 16) != 0:
+                    w_back = w - (w_q - w) if (e ^ f) >> 16 == 0 else w
+                if e != f or ti.abs(2 * w - w_back - w_q) > 0.03 * w * w:
+                    ink = ti.max(ink, line_weight(e, f, w, w_q, w_back, first_moving, owner))
+                if moves and broad > 1.0 and ink < 0.9:
+                    far = 2 * q - at
+                    inside = True
+                    if ti.static(k == 0):
+                        inside = x > 1
+                    elif ti.static(k == 1):
+                        inside = x < width - 2
+                    elif ti.static(k == 2):
+                        inside = y > 1
+                    else:
+                        inside = y < height - 2
+                    if inside and (e ^ f) >> 16 == 0:
+                        g = edge[far]
+                        if (e ^ g) >> 16 != 0:
+                            share = ti.min(broad - 1.0, 1.0)
+                            ink = ti.max(
+                                ink, share * line_weight(f, g, w_q, nearness(vis, far), w, first_moving, owner)
+                            )
+            if ink > 0:
+                c = decode(out, linear)
+                # people: near black, a little of their colour; sets: a deeper shade of their own tint
+                line = c * 0.06 + vec3(0.006, 0.005, 0.009)
+                if not moves:
+                    line = c * 0.22 + vec3(0.02, 0.018, 0.022)
+                    ink *= ti.min(1.0, 0.35 + 2.6 * w)
+                else:
+                    ink *= ti.min(1.0, 0.5 + 5.0 * w)
+                out = encode(c + (line - c) * ink, table)
+        return out
 
     @ti.kernel
-    def object_ids(edge: u32s, surface_object: i1, out: ti.types.ndarray(ti.i32, ndim=1), count: ti.i32):
+    def ink_rows(
+        view: f2,
+        picture: u32s,
+        edge: u32s,
+        vis: u64s,
+        owner: i1,
+        first_moving: ti.i32,
+        linear: f1,
+        table: u32s,
+        out: u32s,
+        views: ti.i32,
+        width: ti.i32,
+        height: ti.i32,
+    ):
+        for line in range(views * height):
+            weight = 0.0065 * view[line // height, 13]
+            y = line % height
+            for x in range(width):
+                at = line * width + x
+                out[at] = inked(
+                    x, y, at, width, height, weight, first_moving, picture, edge, vis, owner, linear, table
+                )
+
+    @ti.func
+    def luma(c):
+        return ti.cast(c >> 24, ti.i32)
+
+    @ti.func
+    def smoothed(x, y, at, width, height, src: ti.template(), linear: ti.template(), table: ti.template()):
+        """A pixel blended over a stair-step edge by how far the true edge passes from its centre.
+
+        Finds the direction of the luma edge through the pixel, walks along it to both ends, and takes the
+        line between the ends as the true edge, as morphological anti-aliasing does (Reshetov 2009).
+        """
+        c = src[at]
+        out = c
+        if 0 < x < width - 1 and 0 < y < height - 1:
+            m = luma(c)
+            n, s = luma(src[at - width]), luma(src[at + width])
+            w, e = luma(src[at - 1]), luma(src[at + 1])
+            low = ti.min(m, n, s, w, e)
+            high = ti.max(m, n, s, w, e)
+            if high - low > 10 + high // 16:
+                nw, ne = luma(src[at - width - 1]), luma(src[at - width + 1])
+                sw, se = luma(src[at + width - 1]), luma(src[at + width + 1])
+                flat = ti.abs(nw - 2 * w + sw) + 2 * ti.abs(n - 2 * m + s) + ti.abs(ne - 2 * e + se)
+                steep = ti.abs(nw - 2 * n + ne) + 2 * ti.abs(w - 2 * m + e) + ti.abs(sw - 2 * s + se)
+                along, across = 1, width
+                before, after = n, s
+                room_low, room_high = ti.min(SEARCH, x - 1), ti.min(SEARCH, width - 2 - x)
+                if steep > flat:
+                    along, across = width, 1
+                    before, after = w, e
+                    room_low, room_high = ti.min(SEARCH, y - 1), ti.min(SEARCH, height - 2 - y)
+                other = after
+                if ti.abs(before - m) >= ti.abs(after - m):
+                    across = -across
+                    other = before
+                jump = ti.abs(other - m)
+                middle = m + other  # twice the luma on the edge
+                q = at + across
+                down, up = 0, 0
+                end_down, end_up = 0, 0
+                going = True
+                while going and down < room_low:
+                    down += 1
+                    end_down = luma(src[at - down * along]) + luma(src[q - down * along]) - middle
+                    going = 2 * ti.abs(end_down) < jump
+                going = True
+                while going and up < room_high:
+                    up += 1
+                    end_up = luma(src[at + up * along]) + luma(src[q + up * along]) - middle
+                    going = 2 * ti.abs(end_up) < jump
+                nearest = end_down if down < up else end_up
+                share = 0.0
+                # the edge bends over this pixel only if the nearer end turns to the other side
+                if (nearest < 0) != (2 * m < middle):
+                    share = 0.5 - ti.cast(ti.min(down, up), ti.f32) / ti.cast(down + up, ti.f32)
+                # single pixels sticking out
+                around = (2 * (n + s + w + e) + nw + ne + sw + se) / 12.0
+                lone = ti.min(ti.abs(around - m) / ti.cast(high - low, ti.f32), 1.0)
+                lone = lone * lone * (3.0 - 2.0 * lone)
+                share = ti.max(share, lone * lone * 0.6)
+                if share > 0:
+                    a = decode(c, linear)
+                    out = encode(a + (decode(src[q], linear) - a) * share, table)
+        return out
+
+    @ti.kernel
+    def smooth_rows(
+        src: u32s, linear: f1, table: u32s, out: u8s, views: ti.i32, width: ti.i32, height: ti.i32
+    ):
+        for line in range(views * height):
+            y = line % height
+            for x in range(width):
+                at = line * width + x
+                c = smoothed(x, y, at, width, height, src, linear, table)
+                out[3 * at] = ti.cast(c & 0xFF, ti.u8)
+                out[3 * at + 1] = ti.cast((c >> 8) & 0xFF, ti.u8)
+                out[3 * at + 2] = ti.cast((c >> 16) & 0xFF, ti.u8)
+
+    @ti.kernel
+    def object_ids(edge: u32s, owner: i1, out: i32s, count: ti.i32):
         for i in range(count):
             s = ti.cast(edge[i] >> 16, ti.i32)
-            out[i] = surface_object[s] if s != 0xFFFF else -1
+            out[i] = owner[s] if s != 0xFFFF else -1
 
-    return SimpleNamespace(bytes_out=bytes_out, object_ids=object_ids)
+    return SimpleNamespace(ink_rows=ink_rows, smooth_rows=smooth_rows, object_ids=object_ids)

@@ -44,11 +44,12 @@ def unpack_normal(bits):
 
 @ti.func
 def encode(light, table: ti.template()):
-    """Linear 0..1 to packed 8-bit sRGB through the table of 4096."""
+    """Linear 0..1 to packed 8-bit sRGB and luma, through the table of 4096."""
     r = ti.cast(ti.min(ti.max(light.x, 0.0), 1.0) * 4095.0 + 0.5, ti.i32)
     g = ti.cast(ti.min(ti.max(light.y, 0.0), 1.0) * 4095.0 + 0.5, ti.i32)
     b = ti.cast(ti.min(ti.max(light.z, 0.0), 1.0) * 4095.0 + 0.5, ti.i32)
-    return table[r] | (table[g] << 8) | (table[b] << 16)
+    r8, g8, b8 = table[r], table[g], table[b]
+    return r8 | (g8 << 8) | (b8 << 16) | (((r8 * 5 + g8 * 9 + b8 * 2) >> 4) << 24)
 
 
 @ti.func

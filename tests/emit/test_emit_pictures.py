@@ -1,0 +1,150 @@
+"""The page, the sheet, the posters and the strip."""
+
+from __future__ import annotations
+
+from html.parser import HTMLParser
+from pathlib import Path
+
+import emit_film as f
+import numpy as np
+import pytest
+from PIL import Image
+
+from runtime.video import VideoError, read_video
+from vdsl.emit import sheet
+from vdsl.emit.burnin import BurnIn, burn, strip_height
+from vdsl.emit.lettering import clean, shortened, width, wrapped
+from vdsl.emit.page import page_html
+from vdsl.emit.video import read_take, write_take
+from vdsl.emit.words import timecode
+
+ATTACK = "<script>alert(1)</script>\"'&"
+
+
+class Tags(HTMLParser):
+    """Collects tags with their attributes, and all text."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.tags: list[tuple[str, dict[str, str | None]]] = []
+        self.text = ""
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.tags.append((tag, dict(attrs)))
+
+    def handle_data(self, data: str) -> None:
+        self.text += data
+
+
+def parsed(html: str) -> Tags:
+    tags = Tags()
+    tags.feed(html)
+    return tags
+
+
+def test_page_shows_shots_in_order_and_works_from_disk(tmp_path: Path) -> None:
+    build = f.film(
+        [f.built(tmp_path, "s1", say="Hello"), f.built(tmp_path, "ü2"), f.built(tmp_path, "s3", takes=0)]
+    )
+    page = parsed(page_html(build))
+    assert [a["id"] for t, a in page.tags if t == "li"] == ["s1", "ü2", "s3"]
+    sources = [a["src"] for t, a in page.tags if t == "video"]
+    assert sources[:4] == [
+        "animatic.mp4",
+        "shots/s1/take-1.mp4",
+        "shots/s1/take-1.mp4",
+        "shots/s1/take-2.mp4",
+    ]
+    assert "shots/%C3%BC2/take-1.mp4" in sources
+    links = [v for _, a in page.tags for k, v in a.items() if k in ("src", "href", "poster")]
+    assert not [v for v in links if v and ("//" in v or v.startswith("/"))]
+    assert "Hello" in page.text
+    assert "hidden 2, wall 5" in page.text
+
+
+def test_page_escapes_what_people_type(tmp_path: Path) -> None:
+    build = f.film([f.built(tmp_path, "s1", say=ATTACK, note=ATTACK)], title=ATTACK)
+    html = page_html(build)
+    assert "<script>alert" not in html
+    page = parsed(html)
+    assert sum(t == "script" for t, _ in page.tags) == 1
+    assert page.text.count(ATTACK) == 4  # title, heading, say and note, as typed
+
+
+def test_sheet_shows_the_keyframes(tmp_path: Path) -> None:
+    build = f.film(
+        [
+            f.built(tmp_path, "s1", shade=40),
+            f.built(tmp_path, "s2", shade=160),
+            f.built(tmp_path, "s3", takes=0),
+        ]
+    )
+    (path,) = sheet.write_sheets(tmp_path, build)
+    picture = np.asarray(Image.open(path).convert("RGB")).astype(int)
+    assert picture.shape[1] == sheet.WIDTH
+    x = sheet.MARGIN + sheet.TEXT + 40
+    row = (picture.shape[0] - sheet.HEAD) // 3
+    assert abs(picture[sheet.HEAD + 60, x] - 40).max() < 6
+    assert abs(picture[sheet.HEAD + row + 60, x] - 160).max() < 6
+    assert (picture[:, : sheet.TEXT] < 80).any()  # there is ink in the text column
+
+
+def test_a_long_film_goes_on_over_sheets(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(sheet, "SHOTS_PER_SHEET", 2)
+    shot = f.built(tmp_path, "s1", takes=1)
+    paths = sheet.write_sheets(tmp_path, f.film([shot] * 5))
+    assert [p.name for p in paths] == ["sheet.png", "sheet-2.png", "sheet-3.png"]
+
+
+@pytest.mark.parametrize(
+    "text", ["日本語のテキスト", "שלום עולם", "🎬🎬", "a\x00b\tc\n", "\ud83d", "", "x" * 9000, "é" * 300]
+)
+def test_any_text_can_be_drawn(tmp_path: Path, text: str) -> None:
+    build = f.film([f.built(tmp_path, "s1", say=text, note=text, takes=1)], title=text)
+    assert sheet.write_sheets(tmp_path, build)[0].exists()
+    assert "s1" in page_html(build)
+    assert width(shortened(text, 20, 200), 20) <= 200 + width("…", 20)
+    assert len(wrapped(text, 20, 200, 2)) <= 2
+    assert clean(text).encode("utf-8") is not None
+
+
+def test_keyframes_come_from_start_middle_and_end(tmp_path: Path) -> None:
+    media = write_take(tmp_path, "s1", 1, f.pictures(26, 30), 26, f.FPS)
+    bars = [int((key[66, :, 0] > 128).sum()) // 4 - 1 for key in media.keys]
+    assert bars == [1, 12, 24]
+    again = read_take(media.video, media.poster)
+    assert again.frames == 26
+    for a, b in zip(media.keys, again.keys, strict=True):
+        assert np.abs(a.astype(int) - b).mean() < 4
+    poster = np.asarray(Image.open(media.poster)).astype(int)
+    assert np.abs(poster - media.keys[1]).mean() < 4
+
+
+def test_a_take_of_the_wrong_length_is_not_kept(tmp_path: Path) -> None:
+    with pytest.raises(ValueError, match="expected 9 frames, got 5"):
+        write_take(tmp_path, "s1", 1, f.pictures(5, 30), 9, f.FPS)
+    assert not (tmp_path / "shots" / "s1" / "take-1.mp4").exists()
+    with pytest.raises(VideoError):
+        read_take(tmp_path / "no.mp4", tmp_path / "no.jpg")
+
+
+@pytest.mark.parametrize("below", [False, True])
+def test_strip_is_written_over_or_under_the_picture(tmp_path: Path, below: bool) -> None:
+    frame = np.full((360, 640, 3), 200, np.uint8)
+    strip = BurnIn("s1", 2, "push", f.FPS, np.linspace(35, 50, 9), start=30, below=below)
+    first, last = burn(frame, strip, 0), burn(frame, strip, 8)
+    high = strip_height(360)
+    assert first.shape == (360 + (high if below else 0), 640, 3)
+    assert first.shape[0] % 2 == 0
+    assert (first[: 360 if below else 360 - high] == 200).all()
+    assert (frame == 200).all()
+    assert (first[-high:] > 180).any()
+    assert (first[-high:] != last[-high:]).any()
+    media = write_take(tmp_path, "s1", 1, [frame] * 9, 9, f.FPS, strip)
+    assert next(read_video(media.video)).shape == first.shape
+
+
+def test_timecode_counts_frames() -> None:
+    assert timecode(0, (24, 1)) == "00:00:00:00"
+    assert timecode(24 * 61 + 5, (24, 1)) == "00:01:01:05"
+    assert timecode(24 * 3600, (24000, 1001)) == "01:00:00:00"

@@ -14,6 +14,7 @@ from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 
 from ..mesh import MATERIALS, Mesh
+from .bake import Volume, key_casters, occlusion_volume
 from .types import RenderScene, Style
 
 CLUSTER = 64  # triangles
@@ -34,6 +35,8 @@ class Prepared:
     sphere: float32 [C, 4], bounds of the static ones
     surface_object: int32 [S]: object id of each surface, a surface being one part of one object
     moving_surface: index of the first skinned surface; static_faces: number of static triangles
+    set_casters, casters: int32, triangles that throw shadows, static and skinned; area: float32 [K], square
+    metres a skinned vertex stands for; volume: occlusion of the set
     """
 
     vertices: NDArray[np.float32]
@@ -49,6 +52,10 @@ class Prepared:
     surface_object: NDArray[np.int32]
     moving_surface: int
     static_faces: int
+    set_casters: NDArray[np.int32]
+    casters: NDArray[np.int32]
+    area: NDArray[np.float32]
+    volume: Volume
 
 
 def to_linear(color: NDArray[np.floating]) -> NDArray[np.float64]:
@@ -198,6 +205,10 @@ def prepare(scene: RenderScene, style: Style) -> Prepared:
         surface_object=surfaces[:, 1].astype(np.int32),
         moving_surface=int((surfaces[:, 0] == 0).sum()),
         static_faces=len(order),
+        set_casters=key_casters(static, scene.static_wall[order], scene.static_object[order]),
+        casters=(key_casters(skinned, none, none) + len(order)).astype(np.int32),
+        area=_vertex_area(skinned),
+        volume=occlusion_volume(static),
     )
 
 
@@ -205,3 +216,11 @@ def _flat(mesh: Mesh) -> NDArray[np.int32]:
     """1 where a face's three normals are the same."""
     n = mesh.normals[mesh.faces]
     return ((n[:, 0] == n[:, 1]).all(axis=1) & (n[:, 0] == n[:, 2]).all(axis=1)).astype(np.int32)
+
+
+def _vertex_area(mesh: Mesh) -> NDArray[np.float32]:
+    """A third of the area of the faces around each vertex, float32 [V]."""
+    corners = mesh.vertices[mesh.faces].astype(np.float64)
+    area = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1) / 6
+    out = np.bincount(mesh.faces.reshape(-1), weights=np.repeat(area, 3), minlength=len(mesh.vertices))
+    return out.astype(np.float32)

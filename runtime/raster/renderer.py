@@ -11,11 +11,18 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from .bake import light_basis
 from .device import Backend, start
 from .prepare import Prepared, prepare, to_encoded, to_linear
 from .types import Camera, Frames, RenderScene, Style, Views
 
 CHUNK_PIXELS = 8_000_000  # pixels in flight; about 30 bytes each
+SET_SHADOW = 2048  # texels along the set's shadow map
+SET_TEXEL = 0.006  # metres, finest
+SHADOW = 512  # texels along a moment's shadow map, for large pictures; half for small ones
+TEXEL = 0.004  # metres, finest
+FLOOR_CELL = 0.05  # metres
+FLOOR_CELLS = 256  # most cells along the floor
 
 
 class Renderer:
@@ -28,9 +35,10 @@ class Renderer:
         self.style = style or Style()
         self.backend: Backend = start(device)
         # Only now: the kernels import taichi, which costs a second.
-        from .kernels import finish, geometry, shading
+        from .kernels import finish, geometry, light, shading
 
         self._geometry = geometry
+        self._light = light
         self._shading = shading.shading_kernels(self.style)
         self._finish = finish.finish_kernels(self.style)
         table = np.round(to_encoded(np.arange(4096) / 4095.0) * 255.0).astype(np.uint32)
@@ -56,6 +64,9 @@ class Renderer:
                 "clusters",
                 "sphere",
                 "surface_object",
+                "set_casters",
+                "casters",
+                "area",
             )
         }
         self._arrays["joints"] = up(scene.joints.astype(np.int32))
@@ -66,9 +77,44 @@ class Renderer:
         if not np.isfinite(packed).all():
             raise ValueError("Light: not all numbers are finite")
         self._arrays["light"] = up(packed.astype(np.float32))
+        basis = light_basis(np.array(light.sun))
+        self._arrays["basis"] = up(basis.astype(np.float32).reshape(-1))
+        volume = prepared.volume
+        self._arrays["values"] = up(volume.values.reshape(-1))
+        self._arrays["volume_low"] = up(np.array([*volume.low, 1.0 / volume.cell], np.float32))
+        self._volume_shape = volume.values.shape
+        self._load_floor(scene)
+        self._load_shadow(prepared)
         self._walls = scene.wall_count
         self._palette_size = int(scene.joints.max()) + 1 if len(scene.joints) else 0
         self._scene = prepared
+
+    def _load_floor(self, scene: RenderScene) -> None:
+        """The grid of floor cells on which people leave their contact shadow."""
+        points = scene.static.vertices if len(scene.static.vertices) else np.zeros((1, 3), np.float32)
+        low, high = points[:, :2].min(axis=0), points[:, :2].max(axis=0)
+        cell = max(FLOOR_CELL, float((high - low).max()) / FLOOR_CELLS)
+        self._columns, self._rows = (int(n) for n in np.ceil((high - low) / cell) + 2)
+        corner = low - cell
+        self._arrays["floor"] = self.backend.upload(np.array([*corner, 1.0 / cell], np.float32))
+
+    def _load_shadow(self, prepared: Prepared) -> None:
+        """The shadow map of the set."""
+        a, size, up = self._arrays, SET_SHADOW, self.backend.upload
+        self._set_frame = up(np.zeros((1, 3), np.float32))
+        if len(prepared.set_casters) and self.style.shadows:
+            vertices = up(prepared.vertices[None])
+            self._set_size = size
+            self._set_depth = self._buffer("set_depth", (size * size,), np.float32)
+            self._set_coarse = self._buffer("set_coarse", ((size // self._light.BLOCK) ** 2,), np.float32)
+            faces, casters, basis, frame = a["faces"], a["set_casters"], a["basis"], self._set_frame
+            self._light.fit(vertices, faces, casters, 0, basis, SET_TEXEL, size, 1, frame)
+            self._light.cast(
+                vertices, faces, casters, 0, basis, frame, size, 1, self._set_depth, self._set_coarse
+            )
+        else:
+            self._set_size = 1
+            self._set_depth = self._set_coarse = up(np.zeros(1, np.float32))
 
     def render(
         self, palettes: NDArray[np.float32], views: Views, size: tuple[int, int], ids: bool = False
@@ -89,7 +135,7 @@ class Renderer:
         for begin in range(0, count, chunk):
             part = slice(begin, min(count, begin + chunk))
             used, local = np.unique(moment[part], return_inverse=True)
-            self._move(palettes[used] if len(palettes) else palettes)
+            self._move(palettes[used] if len(palettes) else palettes, SHADOW if height > 400 else SHADOW // 2)
             self._draw(
                 view[part],
                 local.reshape(-1).astype(np.int32),
@@ -130,8 +176,8 @@ class Renderer:
             have = self._buffers[name] = self.backend.buffer(shape, dtype)
         return have
 
-    def _move(self, palettes: NDArray[np.float32]) -> None:
-        """Skin all moments of a chunk."""
+    def _move(self, palettes: NDArray[np.float32], size: int) -> None:
+        """Skin all moments of a chunk, and draw their shadow maps of size x size texels."""
         scene, a = self._scene, self._arrays
         assert scene is not None
         moments, vertices = max(len(palettes), 1), max(len(scene.rest), 1)
@@ -139,6 +185,13 @@ class Renderer:
         self._normal = self._buffer("normal", (moments, vertices, 3), np.float32)
         clusters = len(scene.clusters) - scene.moving_first
         self._ball = self._buffer("ball", (moments, max(clusters, 1), 4), np.float32)
+        self._size = size if clusters and len(palettes) and self.style.shadows else 1
+        self._frame = self._buffer("frame", (moments, 3), np.float32)
+        self._depth = self._buffer("depth", (moments * self._size**2,), np.float32)
+        blocks = max(1, self._size // self._light.BLOCK)
+        self._coarse = self._buffer("coarse", (moments * blocks**2,), np.float32)
+        cells = self._rows * self._columns
+        self._ground = self._buffer("ground", (moments * cells,), np.float32)
         if clusters and len(palettes):
             palette = self.backend.upload(palettes.astype(np.float32))
             self._geometry.skin(
@@ -160,6 +213,15 @@ class Renderer:
                 self._position,
                 self._ball,
             )
+            if self._size > 1 and len(scene.casters):
+                same = (self._position, a["faces"], a["casters"], len(scene.vertices), a["basis"])
+                self._light.fit(*same, TEXEL, size, len(palettes), self._frame)
+                self._light.cast(*same, self._frame, size, len(palettes), self._depth, self._coarse)
+            if self.style.occlusion:
+                spare = self._buffer("spare", (moments * cells,), np.float32)
+                self._light.touch(
+                    self._position, a["area"], len(palettes), a["floor"], self._columns, self._rows, spare, self._ground
+                )
 
     def _draw(
         self,
@@ -211,6 +273,22 @@ class Renderer:
             scene.static_faces,
             len(scene.vertices),
             a["light"],
+            a["basis"],
+            self._set_frame,
+            self._set_size,
+            self._set_depth,
+            self._set_coarse,
+            self._frame,
+            self._size,
+            self._depth,
+            self._coarse,
+            *self._volume_shape,
+            a["volume_low"],
+            a["values"],
+            a["floor"],
+            self._columns,
+            self._rows,
+            self._ground,
             self._table,
             vis,
             picture,

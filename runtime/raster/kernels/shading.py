@@ -11,6 +11,8 @@ import taichi as ti
 
 from ..types import Style
 from .geometry import f1, f2, f3, i1, i2, item3, part3, row3, u32s, u64s, vec3
+from .light import across, lit
+from .pattern import glazed, pattern
 
 NOTHING = 0xFFFF0000
 
@@ -58,10 +60,51 @@ def soft_step(x, at, width):
     return t * t * (3.0 - 2.0 * t)
 
 
+@ti.func
+def area_near(p, low, inverse, nx, ny, nz, values: ti.template()):
+    """Trilinear sample of the occlusion volume, 0 outside."""
+    x, y, z = (p.x - low.x) * inverse, (p.y - low.y) * inverse, (p.z - low.z) * inverse
+    out = 0.0
+    if 0 <= x < nx - 1 and 0 <= y < ny - 1 and 0 <= z < nz - 1:
+        i, j, k = ti.cast(x, ti.i32), ti.cast(y, ti.i32), ti.cast(z, ti.i32)
+        x -= i
+        y -= j
+        z -= k
+        at = (i * ny + j) * nz + k
+        a = values[at] + (values[at + 1] - values[at]) * z
+        b = values[at + nz] + (values[at + nz + 1] - values[at + nz]) * z
+        at += ny * nz
+        c = values[at] + (values[at + 1] - values[at]) * z
+        d = values[at + nz] + (values[at + nz + 1] - values[at + nz]) * z
+        a += (b - a) * y
+        c += (d - c) * y
+        out = a + (c - a) * x
+    return out
+
+
+@ti.func
+def standing_near(p, m, floor: ti.template(), columns, rows, ground: ti.template()):
+    """Bilinear sample of what stands on the floor."""
+    x = (p.x - floor[0]) * floor[2] - 0.5
+    y = (p.y - floor[1]) * floor[2] - 0.5
+    out = 0.0
+    if 0 <= x < columns - 1 and 0 <= y < rows - 1:
+        i, j = ti.cast(x, ti.i32), ti.cast(y, ti.i32)
+        x -= i
+        y -= j
+        at = m * rows * columns + j * columns + i
+        a = ground[at] + (ground[at + 1] - ground[at]) * x
+        b = ground[at + columns] + (ground[at + columns + 1] - ground[at + columns]) * x
+        out = a + (b - a) * y
+    return out
+
+
 @lru_cache(maxsize=8)
 def shading_kernels(style: Style) -> SimpleNamespace:
     """The shading kernel of a style."""
     tones = style.tones
+    shadows = style.shadows
+    occlusion = style.occlusion
 
     @ti.func
     def toned(x):
@@ -72,7 +115,7 @@ def shading_kernels(style: Style) -> SimpleNamespace:
         elif ti.static(tones >= 3):
             out = 0.0
             for k in ti.static(range(tones - 1)):
-                out += soft_step(x, 0.08 + 0.5 * k / (tones - 2), 0.07 + 0.05 * k)
+                out += soft_step(x, 0.10 + 0.42 * k / (tones - 2), 0.06 + 0.05 * k)
             out /= tones - 1
         return out
 
@@ -90,6 +133,24 @@ def shading_kernels(style: Style) -> SimpleNamespace:
         static_faces: ti.i32,
         static_vertices: ti.i32,
         light: f1,
+        basis: f1,
+        set_frame: f2,
+        set_size: ti.i32,
+        set_depth: f1,
+        set_coarse: f1,
+        frame: f2,
+        size: ti.i32,
+        depth_map: f1,
+        coarse: f1,
+        nx: ti.i32,
+        ny: ti.i32,
+        nz: ti.i32,
+        volume_low: f1,
+        values: f1,
+        floor: f1,
+        columns: ti.i32,
+        rows: ti.i32,
+        ground: f1,
         table: u32s,
         vis: u64s,
         picture: u32s,
@@ -113,9 +174,10 @@ def shading_kernels(style: Style) -> SimpleNamespace:
             sun = vec3(light[0], light[1], light[2])
             sun_color = vec3(light[3], light[4], light[5])
             sky = vec3(light[6], light[7], light[8])
-            ground = vec3(light[9], light[10], light[11])
+            under = vec3(light[9], light[10], light[11])
             horizon = vec3(light[12], light[13], light[14])
             zenith = vec3(light[15], light[16], light[17])
+            corner = vec3(volume_low[0], volume_low[1], volume_low[2])
             last = -1
             p0, g1, g2 = vec3(0), vec3(0), vec3(0)
             n0, n1, n2 = vec3(0), vec3(0), vec3(0)
@@ -123,6 +185,10 @@ def shading_kernels(style: Style) -> SimpleNamespace:
             surface = ti.u32(0)
             flat = False
             moves = False
+            material = 0
+            slant = 1.0
+            shade, shade_step = 1.0, 0.0
+            known = 0
             for x in range(width):
                 at = line * width + x
                 key = vis[at]
@@ -137,6 +203,7 @@ def shading_kernels(style: Style) -> SimpleNamespace:
                     depth = 1.0 / ti.bit_cast(ti.cast(key >> 32, ti.u32), ti.f32)
                     if t != last:
                         last = t
+                        known = 0
                         a, b, c = faces[t, 0], faces[t, 1], faces[t, 2]
                         moves = t >= static_faces
                         q1, q2 = vec3(0), vec3(0)
@@ -164,6 +231,10 @@ def shading_kernels(style: Style) -> SimpleNamespace:
                         base = row3(color, t)
                         surface = ti.cast(info[t, 0], ti.u32) << 16
                         flat = (info[t, 1] >> 8) & 1
+                        material = info[t, 1] & 255
+                        # how much longer a pixel is on the surface than across it, tamed at grazing angles
+                        cosine = ti.abs(cross.dot(ray)) / ti.max(ray.norm() * cross.norm(), 1e-12)
+                        slant = 1.0 / ti.max(ti.sqrt(cosine), 0.15)
                     where = eye + ray * depth
                     nn = n0
                     if not flat:
@@ -171,10 +242,58 @@ def shading_kernels(style: Style) -> SimpleNamespace:
                         b1 = ti.min(ti.max(d.dot(g1), 0.0), 1.0)
                         b2 = ti.min(ti.max(d.dot(g2), 0.0), 1.0)
                         nn = (n0 + n1 * b1 + n2 * b2).normalized(1e-12)
-                    lit = toned(nn.dot(sun))
-                    out = base * (ground + (sky - ground) * (nn.z * 0.5 + 0.5) + sun_color * lit)
+                    if material == 7:
+                        out = glazed(base, ray, where)
+                    elif material == 8:
+                        out = base * 1.25 + 0.08
+                    else:
+                        key_light = toned(nn.dot(sun))
+                        ambient = under + (sky - under) * (nn.z * 0.5 + 0.5)
+                        if ti.static(shadows):
+                            if key_light > 0:
+                                q = across(basis, where + nn * 0.02) + vec3(0, 0, 0.006)
+                                through = lit(q, m, frame, size, depth_map, coarse)
+                                if through > 0:
+                                    q += vec3(0, 0, 0.01)
+                                    through *= lit(q, 0, set_frame, set_size, set_depth, set_coarse)
+                                key_light *= through
+                        albedo = base
+                        if not moves:
+                            if ti.static(occlusion):
+                                if x >= known:
+                                    # sample at both ends of the next few pixels of this triangle
+                                    end = x
+                                    while end < width - 1 and end < x + 8 and ti.cast(vis[at + end - x + 1], ti.u32) == ti.cast(key, ti.u32):
+                                        end += 1
+                                    shade = sheltered(where, nn, m, corner, volume_low[3], nx, ny, nz, values, floor, columns, rows, ground)
+                                    known = end + 1
+                                    shade_step = 0.0
+                                    if end > x:
+                                        depth_end = 1.0 / ti.bit_cast(ti.cast(vis[at + end - x] >> 32, ti.u32), ti.f32)
+                                        there = eye + (first + step * ti.cast(end, ti.f32)) * depth_end
+                                        other = sheltered(there, nn, m, corner, volume_low[3], nx, ny, nz, values, floor, columns, rows, ground)
+                                        shade_step = (other - shade) / ti.cast(end - x, ti.f32)
+                                        known = end
+                                ambient *= shade
+                                key_light *= 0.5 + 0.5 * shade
+                                shade += shade_step
+                            if material != 0:
+                                albedo *= pattern(material, where, nn, depth * slant / view[n, 13])
+                        out = albedo * (ambient + sun_color * key_light)
+                    haze = ti.min(ti.max((depth - 2.0) * 0.04, 0.0), 1.0)
+                    haze *= 0.15 if moves else 0.36
+                    out += (horizon - out) * haze
                     mark = surface | pack_normal(nn)
                 picture[at] = encode(out, table)
                 edge[at] = mark
+
+    @ti.func
+    def sheltered(where, nn, m, corner, inverse, nx, ny, nz, values: ti.template(), floor: ti.template(), columns, rows, ground: ti.template()):
+        """Share of the ambient light that reaches a point of the set."""
+        near = area_near(where + nn * 0.24, corner, inverse, nx, ny, nz, values)
+        out = 1.0 - 0.42 * ti.min(ti.max((near - 0.36) * 0.9, 0.0), 1.0)
+        if nn.z > 0.7 and where.z < 0.2:
+            out *= 1.0 - 0.5 * (1.0 - ti.exp(-1.6 * standing_near(where, m, floor, columns, rows, ground)))
+        return out
 
     return SimpleNamespace(rows=shade_rows)

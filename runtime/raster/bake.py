@@ -1,0 +1,115 @@
+"""What is worked out once per scene: who casts shadows, and the ambient occlusion of the set.
+
+Occlusion is a volume: the surface area of the set, blurred. Sampled a little off a surface it is
+small in the open and large in corners, under tables and along skirtings; being smooth and fixed in
+the world it neither flickers nor crawls.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.ndimage import gaussian_filter
+
+from ..mesh import MATERIALS, Mesh
+
+REACH = 0.16  # metres, standard deviation of the blur
+CELLS = 500_000  # most cells of a volume
+CELL = 0.07  # metres, finest cell
+CEILING = 1.9  # metres; broad things wholly above it do not block the key light of an interior
+GROUND = 0.03  # metres; what is wholly below it casts no shadow worth drawing
+BROAD = 1.5  # square metres
+
+
+@dataclass(frozen=True, eq=False)
+class Volume:
+    """Blurred surface area, scaled so that one plane gives 1 on it.
+
+    values: float32 [X, Y, Z]; low: position of value [0, 0, 0], metres; cell: spacing, metres
+    """
+
+    values: NDArray[np.float32]
+    low: NDArray[np.float64]
+    cell: float
+
+
+def key_casters(mesh: Mesh, wall: NDArray[np.int32], object_ids: NDArray[np.int32]) -> NDArray[np.int32]:
+    """Indices of the static faces that throw a shadow in the key light.
+
+    The shell of a room does not: the key light is a film light, set up where walls and ceiling are wild.
+    """
+    if not len(mesh.faces):
+        return np.zeros(0, np.int32)
+    corners = mesh.vertices[mesh.faces]
+    low, high = corners[..., 2].min(axis=1), corners[..., 2].max(axis=1)
+    solid = ~np.isin(mesh.materials, [MATERIALS.index("glass"), MATERIALS.index("glow")])
+    keep = solid & (high > GROUND)
+    if (wall >= 0).any():
+        ids, index = np.unique(object_ids, return_inverse=True)
+        index = index.reshape(-1)
+        object_low = np.full(len(ids), np.inf)
+        np.minimum.at(object_low, index, low)
+        flat_area = np.abs(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])[:, 2]) / 2
+        area = np.bincount(index, weights=flat_area)
+        ceiling = (low > CEILING) & (flat_area > BROAD / 2)
+        keep &= (wall < 0) & ~ceiling & ~((object_low > CEILING) & (area > BROAD))[index]
+    return np.flatnonzero(keep).astype(np.int32)
+
+
+def occlusion_volume(mesh: Mesh) -> Volume:
+    """The occlusion volume of a static mesh."""
+    if not len(mesh.faces):
+        return Volume(np.zeros((2, 2, 2), np.float32), np.zeros(3), 1.0)
+    solid = ~np.isin(mesh.materials, [MATERIALS.index("glass"), MATERIALS.index("glow")])
+    corners = mesh.vertices[mesh.faces[solid]].astype(np.float64)
+    margin = 2.5 * REACH
+    used = mesh.vertices[mesh.faces.reshape(-1)].astype(np.float64)
+    low, high = used.min(axis=0) - margin, used.max(axis=0) + margin
+    cell = max(CELL, float((np.prod(high - low) / CELLS) ** (1 / 3)))
+    shape = np.ceil((high - low) / cell).astype(int) + 2
+    points, areas = _surface_points(corners, cell * 0.7)
+    where = (points - low) / cell
+    base = np.floor(where).astype(np.int64)
+    part = where - base
+    values = np.zeros(int(np.prod(shape)))
+    for corner in np.ndindex(2, 2, 2):
+        share = np.prod(np.where(np.array(corner) == 1, part, 1 - part), axis=1)
+        index = np.ravel_multi_index(tuple((base + corner).T), tuple(shape))
+        values += np.bincount(index, weights=share * areas, minlength=len(values))
+    reach = max(REACH, 0.9 * cell)
+    blurred = gaussian_filter(values.reshape(shape) / cell**3, reach / cell, truncate=2.5)
+    return Volume((blurred * np.sqrt(2 * np.pi) * reach).astype(np.float32), low, cell)
+
+
+def _surface_points(
+    corners: NDArray[np.float64], spacing: float
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Points spread evenly over triangles [F, 3, 3], about ``spacing`` apart, and the area each stands for."""
+    a, u, v = corners[:, 0], corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
+    area = np.linalg.norm(np.cross(u, v), axis=1) / 2
+    longest = np.linalg.norm(np.stack([u, v, u - v]), axis=2).max(axis=0)
+    steps = np.clip(np.ceil(longest / spacing), 1, 400).astype(int)
+    points, areas = [], []
+    for n in np.unique(steps):
+        chosen = steps == n
+        # centres of the n^2 small triangles
+        i, j = np.meshgrid(np.arange(n), np.arange(n), indexing="ij")
+        upright = i + j < n
+        turned = i + j < n - 1
+        s = np.concatenate([(i[upright] + 1 / 3) / n, (i[turned] + 2 / 3) / n])
+        t = np.concatenate([(j[upright] + 1 / 3) / n, (j[turned] + 2 / 3) / n])
+        p = a[chosen, None] + s[:, None] * u[chosen, None] + t[:, None] * v[chosen, None]
+        points.append(p.reshape(-1, 3))
+        areas.append(np.repeat(area[chosen] / (n * n), n * n))
+    return np.concatenate(points), np.concatenate(areas)
+
+
+def light_basis(sun: NDArray[np.floating]) -> NDArray[np.float64]:
+    """Orthonormal rows [3, 3]: two across the light, and towards it."""
+    towards = np.asarray(sun, np.float64) / np.linalg.norm(sun)
+    helper = np.array([0.0, 0.0, 1.0]) if abs(towards[2]) < 0.9 else np.array([1.0, 0.0, 0.0])
+    across = np.cross(helper, towards)
+    across /= np.linalg.norm(across)
+    return np.stack([across, np.cross(towards, across), towards])

@@ -1,0 +1,213 @@
+"""Light: shadow maps of the set and of every moment, and where people touch the floor.
+
+A shadow map keeps, per texel of a plane across the light, the greatest distance towards the light.
+``coarse`` keeps the greatest value in and around each block of BLOCK x BLOCK texels: most points are
+nearer to the light than that, and need no further look.
+"""
+
+import taichi as ti
+
+from .geometry import f1, f2, f3, i1, i2, to_pixel, vec3
+
+BLOCK = 8
+NOWHERE = -1e9
+
+
+@ti.func
+def across(basis: ti.template(), p):
+    """Light coordinates of a point: two across, one towards the light."""
+    return vec3(
+        basis[0] * p.x + basis[1] * p.y + basis[2] * p.z,
+        basis[3] * p.x + basis[4] * p.y + basis[5] * p.z,
+        basis[6] * p.x + basis[7] * p.y + basis[8] * p.z,
+    )
+
+
+@ti.kernel
+def fit(
+    position: f3, faces: i2, casters: i1, offset: ti.i32, basis: f1, finest: ti.f32, size: ti.i32, moments: ti.i32, frame: f2
+):
+    """Frame [M, 3] of each moment's map: its corner across the light, and texels a metre.
+
+    The corner lies on whole texels and the scale on half octaves, so that the map does not swim.
+    """
+    ti.loop_config(block_dim=1)
+    for m in range(moments):
+        low = vec3(1e30)
+        high = vec3(-1e30)
+        for i in range(casters.shape[0]):
+            for k in ti.static(range(3)):
+                v = faces[casters[i], k] - offset
+                q = across(basis, vec3(position[m, v, 0], position[m, v, 1], position[m, v, 2]))
+                low = ti.min(low, q)
+                high = ti.max(high, q)
+        extent = ti.max(high.x - low.x, high.y - low.y, 1e-3)
+        texel = finest
+        while texel * (size - 8) < extent:
+            texel *= ti.sqrt(2.0)
+        frame[m, 0] = (ti.floor(low.x / texel) - 3) * texel
+        frame[m, 1] = (ti.floor(low.y / texel) - 3) * texel
+        frame[m, 2] = 1.0 / texel
+
+
+@ti.kernel
+def cast(
+    position: f3,
+    faces: i2,
+    casters: i1,
+    offset: ti.i32,
+    basis: f1,
+    frame: f2,
+    size: ti.i32,
+    moments: ti.i32,
+    depth: f1,
+    coarse: f1,
+):
+    """Draw the casters into each moment's map, and the coarse map of it."""
+    ti.loop_config(block_dim=1)
+    for m in range(moments):
+        base = m * size * size
+        for i in range(size * size):
+            depth[base + i] = NOWHERE
+        for i in range(casters.shape[0]):
+            corner = ti.Matrix.zero(ti.f32, 3, 3)
+            for k in ti.static(range(3)):
+                v = faces[casters[i], k] - offset
+                q = across(basis, vec3(position[m, v, 0], position[m, v, 1], position[m, v, 2]))
+                corner[k, 0] = (q.x - frame[m, 0]) * frame[m, 2]
+                corner[k, 1] = (q.y - frame[m, 1]) * frame[m, 2]
+                corner[k, 2] = q.z
+            a = vec3(corner[0, 0], corner[0, 1], corner[0, 2])
+            b = vec3(corner[1, 0], corner[1, 1], corner[1, 2])
+            c = vec3(corner[2, 0], corner[2, 1], corner[2, 2])
+            stamp(depth, base, size, a, b, c)
+        blocks = size // BLOCK
+        begin = m * blocks * blocks
+        for j in range(blocks):
+            for i in range(blocks):
+                most = NOWHERE
+                for y in range(ti.max(0, j * BLOCK - 3), ti.min(size, j * BLOCK + BLOCK + 3)):
+                    for x in range(ti.max(0, i * BLOCK - 3), ti.min(size, i * BLOCK + BLOCK + 3)):
+                        most = ti.max(most, depth[base + y * size + x])
+                coarse[begin + j * blocks + i] = most
+
+
+@ti.func
+def stamp(depth: ti.template(), base, size, a, b, c):
+    """Keep the greatest height of one triangle in a map; corners are (x, y, height)."""
+    if a.y > b.y:
+        a, b = b, a
+    if b.y > c.y:
+        b, c = c, b
+    if a.y > b.y:
+        a, b = b, a
+    y0 = ti.max(0, ti.cast(to_pixel(a.y), ti.i32))
+    y1 = ti.min(size, ti.cast(to_pixel(c.y), ti.i32))
+    ab = b - a
+    ac = c - a
+    bc = c - b
+    det = ab.x * ac.y - ac.x * ab.y
+    if y0 < y1 and det != 0:
+        slope_x = (ab.z * ac.y - ac.z * ab.y) / det
+        slope_y = (ac.z * ab.x - ab.z * ac.x) / det
+        least = ti.min(a.z, b.z, c.z)
+        most = ti.max(a.z, b.z, c.z)
+        long = ac.x / ac.y
+        upper = ab.x / ab.y if ab.y > 0 else 0.0
+        lower = bc.x / bc.y if bc.y > 0 else 0.0
+        for y in range(y0, y1):
+            centre = ti.cast(y, ti.f32) + 0.5
+            xa = a.x + (centre - a.y) * long
+            xb = a.x + (centre - a.y) * upper
+            if centre >= b.y:
+                xb = b.x + (centre - b.y) * lower
+            x0 = ti.max(0, ti.cast(to_pixel(ti.min(xa, xb)), ti.i32))
+            x1 = ti.min(size, ti.cast(to_pixel(ti.max(xa, xb)), ti.i32))
+            row = a.z + (centre - a.y) * slope_y + (0.5 - a.x) * slope_x
+            start = base + y * size
+            for x in range(x0, x1):
+                w = ti.min(ti.max(row + ti.cast(x, ti.f32) * slope_x, least), most)
+                if w > depth[start + x]:
+                    depth[start + x] = w
+
+
+@ti.func
+def lit(q, m, frame: ti.template(), size, depth: ti.template(), coarse: ti.template()):
+    """Share of the light that reaches light coordinates ``q``: 4 x 4 comparisons under a B-spline."""
+    out = 1.0
+    x = (q.x - frame[m, 0]) * frame[m, 2] - 0.5
+    y = (q.y - frame[m, 1]) * frame[m, 2] - 0.5
+    if 2 <= x < size - 4 and 2 <= y < size - 4:
+        i = ti.cast(x, ti.i32)
+        j = ti.cast(y, ti.i32)
+        blocks = size // BLOCK
+        if q.z < coarse[m * blocks * blocks + (j // BLOCK) * blocks + i // BLOCK]:
+            fx = x - i
+            fy = y - j
+            wx = spline(fx)
+            wy = spline(fy)
+            at = m * size * size + (j - 1) * size + i - 1
+            blocked = 0.0
+            for b in ti.static(range(4)):
+                row = 0.0
+                for a in ti.static(range(4)):
+                    row += wx[a] if depth[at + b * size + a] > q.z else 0.0
+                blocked += row * wy[b]
+            out = 1.0 - blocked
+    return out
+
+
+@ti.func
+def spline(t):
+    """Weights of the uniform cubic B-spline."""
+    s = 1.0 - t
+    return ti.Vector(
+        [
+            s * s * s / 6.0,
+            (4.0 - 6.0 * t * t + 3.0 * t * t * t) / 6.0,
+            (4.0 - 6.0 * s * s + 3.0 * s * s * s) / 6.0,
+            t * t * t / 6.0,
+        ]
+    )
+
+
+@ti.kernel
+def touch(
+    position: f3, area: f1, moments: ti.i32, floor: f1, columns: ti.i32, rows: ti.i32, spare: f1, ground: f1
+):
+    """How closely moving things stand over each cell of the floor, blurred: ground [M, rows, columns].
+
+    area: surface each skinned vertex stands for, square metres; floor: corner x, y, cells a metre
+    """
+    ti.loop_config(block_dim=1)
+    for m in range(moments):
+        cells = rows * columns
+        base = m * cells
+        for i in range(cells):
+            ground[base + i] = 0.0
+        left, right, low, high = columns, -1, rows, -1
+        for v in range(area.shape[0]):
+            z = position[m, v, 2]
+            x = ti.cast(ti.floor((position[m, v, 0] - floor[0]) * floor[2]), ti.i32)
+            y = ti.cast(ti.floor((position[m, v, 1] - floor[1]) * floor[2]), ti.i32)
+            if z < 0.4 and 0 <= x < columns and 0 <= y < rows:
+                share = 1.0 - ti.max(z, 0.0) / 0.4
+                ground[base + y * columns + x] += area[v] * share * share * floor[2] * floor[2]
+                left, right = ti.min(left, x), ti.max(right, x)
+                low, high = ti.min(low, y), ti.max(high, y)
+        if right >= 0:
+            left, right = ti.max(left - 8, 0), ti.min(right + 9, columns)
+            low, high = ti.max(low - 8, 0), ti.min(high + 9, rows)
+            for _ in range(3):
+                for y in range(low, high):
+                    for x in range(left, right):
+                        at = base + y * columns + x
+                        a = ground[at - 1] if x > left else 0.0
+                        b = ground[at + 1] if x < right - 1 else 0.0
+                        spare[at] = (a + ground[at] + b) / 3.0
+                for y in range(low, high):
+                    for x in range(left, right):
+                        at = base + y * columns + x
+                        a = spare[at - columns] if y > low else 0.0
+                        b = spare[at + columns] if y < high - 1 else 0.0
+                        ground[at] = (a + spare[at] + b) / 3.0

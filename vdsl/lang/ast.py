@@ -12,8 +12,6 @@ from typing import TypeAlias
 
 from .source import Source, Span
 
-
-
 # --- values -------------------------------------------------------------------------
 
 

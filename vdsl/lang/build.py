@@ -69,6 +69,10 @@ class Builder:
             unit = self._odd_unit(token, unit, cut)
         return ast.Number(float(raw[:cut]), unit, self.span(token))
 
+    def _negative(self, node: Tree[Token]) -> ast.Number:
+        number = self.number(_token(node.children[-1]))
+        return ast.Number(-number.value, number.unit, self.span(node))
+
     def _odd_unit(self, token: Token, unit: str, cut: int) -> str | None:
         low = unit.casefold()
         meant = low if low in UNITS else _SPOKEN_UNITS.get(low)
@@ -300,6 +304,7 @@ def _short(text: str) -> str:
 _OPS = {"add": "+", "subtract": "-", "multiply": "*", "divide": "/"}
 _VALUES: dict[str, Callable[[Builder, Any, int], ast.Value]] = {
     "number": lambda b, n, d: b.number(n.children[0]),
+    "negative": lambda b, n, d: b._negative(n),
     "text": lambda b, n, d: b.text(n.children[0]),
     "name": lambda b, n, d: b.name(n.children[0]),
     "star": lambda b, n, d: ast.Star(b.span(n)),

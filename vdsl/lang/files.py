@@ -24,7 +24,12 @@ def read_source(path: Path, report: Report, shown: str | None = None) -> Source 
     name = str(path) if shown is None else shown
     empty = Source(name, "")
     if len(data) > LARGEST_FILE:
-        report.error("VDS014", Span(empty, 0, 0), label="this file is larger than 32 MiB", help="is it a script at all?")
+        report.error(
+            "VDS014",
+            Span(empty, 0, 0),
+            label="this file is larger than 32 MiB",
+            help="is it a script at all?",
+        )
         return None
     try:
         text = data.decode("utf-8")
@@ -34,7 +39,9 @@ def read_source(path: Path, report: Report, shown: str | None = None) -> Source 
             "VDS014",
             Span(empty, 0, 0),
             label=f"byte {error.start} (line {line}) is not UTF-8 text",
-            help="save the script as UTF-8" if b"\0" not in data else "this looks like a binary file, not a script",
+            help="save the script as UTF-8"
+            if b"\0" not in data
+            else "this looks like a binary file, not a script",
         )
         return None
     if "\0" in text:

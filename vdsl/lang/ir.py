@@ -48,7 +48,8 @@ class Target:
     """What a name resolved to.
 
     kind: ``object`` (path of an object, from the set's root), ``spot`` (an object's or room's path and,
-        as last part, one of its spots), ``room`` or ``character`` (path is the character's name alone)
+        as last part, one of its spots), ``room``, ``character`` (path is the character's name alone) or,
+        for the place of someone nobody placed, ``free`` (path is (): the first free spot of the scene)
     """
 
     kind: str
@@ -70,7 +71,10 @@ class Placement:
 
 @dataclass(frozen=True)
 class Scene:
-    """``scene kitchen = apartment.kitchen at dusk``; ``room`` is the path inside the set, () for all of it."""
+    """``scene kitchen = apartment.kitchen at dusk``; ``room`` is the path inside the set, () for all of it.
+
+    placements: everyone who is placed or named in the scene, each once
+    """
 
     name: str
     set: str
@@ -123,15 +127,22 @@ class Shot:
 
 @dataclass(frozen=True)
 class Transition:
-    """How the next line joins the last: cut, dissolve, fade-out, fade-in or wipe; seconds."""
+    """How a line joins the one before it: cut, dissolve, fade-out, fade-in or wipe; seconds.
+
+    out: for a ``fade-in`` after a ``fade-out``, the seconds the line before takes to fade out
+    """
 
     kind: str
     duration: float
+    out: float = 0.0
 
 
 @dataclass(frozen=True)
 class StoryLine:
-    """What happens, and the cameras on it. No beats: an establishing shot of the scene."""
+    """What happens, and the cameras on it. No beats: an establishing shot of the scene.
+
+    transition: how this line joins the one before it
+    """
 
     scene: int
     beats: tuple[Beat, ...]
@@ -142,7 +153,10 @@ class StoryLine:
 
 @dataclass(frozen=True)
 class Storyboard:
-    """A whole checked script. ``fps`` is (numerator, denominator); ``size`` is even pixels."""
+    """A whole checked script. ``fps`` is (numerator, denominator); ``size`` is even pixels.
+
+    ending: the fade-out after the last line, if there is one
+    """
 
     title: str
     fps: tuple[int, int]
@@ -154,5 +168,4 @@ class Storyboard:
     scenes: tuple[Scene, ...]
     lines: tuple[StoryLine, ...]
     source_name: str
-
-
+    ending: Transition | None = None

@@ -1,0 +1,219 @@
+"""The words of one ``(char do sth)`` into a :class:`vdsl.lang.ir.Beat`.
+
+The first word is the character; the longest run after it that is an action is the action; what is
+left are one or two targets, the second after a word like ``to`` or ``with``.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from . import ast, words
+from .catalog import CatalogLike
+from .definitions.types import DefinitionBase
+from .diagnostics import Report, listing, nearest
+from .ir import Beat, Target
+from .scope import Scope
+
+_MOST_ACTION_WORDS = 4
+_KIND_WORDS = {"place": "a place", "object": "a thing", "character": "someone"}
+
+FindTarget = Callable[[ast.Name], "Target | None"]
+
+
+class BeatReader:
+    """Reads beats of one scene. ``scope`` is None where the scene's set is unknown (then no targets are)."""
+
+    def __init__(
+        self, catalog: CatalogLike, characters: tuple[str, ...], scope: Scope | None, report: Report
+    ) -> None:
+        self.catalog = catalog
+        self.characters = characters
+        self.scope = scope
+        self.report = report
+        self._actions = {words.fold(name): name for name in catalog.names("action")}
+
+    def read(self, node: ast.BeatNode) -> Beat | None:
+        character = self._character(node)
+        if len(node.words) < 2:
+            self.report.error(
+                "VDS070",
+                node.span,
+                label="nothing is done here",
+                help="as in `(anna walk door)`: character, action, target",
+            )
+            return None
+        action, used = self._action(node)
+        if action is None:
+            return None
+        definition = self.catalog.get("action", action)
+        named = self._targets(node.words[1 + used :], action)
+        if definition is None or named is None or character is None:
+            return None
+        if not self._fits(node, action, definition, named):
+            return None
+        first, second = (*named, None, None)[:2]
+        if any(t is not None and t.kind == "character" and t.path[0] == character for t in (first, second)):
+            self.report.error("VDS075", node.span, label=f"{character} cannot do this to themselves")
+            return None
+        return Beat(character, action, first, second, node.span)
+
+    # -- who and what ----------------------------------------------------------------
+
+    def _character(self, node: ast.BeatNode) -> str | None:
+        word = node.words[0]
+        if word.text in self.characters:
+            return word.text
+        unknown_character(word, self.characters, self.report)
+        return None
+
+    def _action(self, node: ast.BeatNode) -> tuple[str | None, int]:
+        """The action, and how many words it took."""
+        rest = node.words[1:]
+        for size in range(min(_MOST_ACTION_WORDS, len(rest)), 0, -1):
+            word = "-".join(words.fold(name.text) for name in rest[:size])
+            if word in self._actions:
+                return self._actions[word], size
+        word = words.fold(rest[0].text)
+        meant = nearest(word, self._actions)
+        if meant is None and len(rest) > 1:
+            meant = nearest(f"{word}-{words.fold(rest[1].text)}", self._actions)
+        if meant is None:  # walks, walking, walked
+            meant = next((a for a in self._actions if len(a) > 2 and word.startswith(a)), None)
+        self.report.error(
+            "VDS071", rest[0].span, label=f"no action is called `{rest[0].text}`",
+            help=f"actions are {listing(self.catalog.names('action'), 40)}", suggestion=meant, fix=meant,
+        )  # fmt: skip
+        return None, 0
+
+    # -- to what ---------------------------------------------------------------------
+
+    def _targets(self, rest: tuple[ast.Name, ...], action: str) -> list[Target] | None:
+        """The targets named; None where one was reported."""
+        groups = self._split(rest)
+        if groups is None:
+            return None
+        if len(groups) > 2:
+            self.report.error("VDS073", groups[2][0].span, label="an action has two targets at most")
+            return None
+        found = [self.target(group) for group in groups]
+        known = [target for target in found if target is not None]
+        return known if len(known) == len(found) else None
+
+    def _split(self, rest: tuple[ast.Name, ...]) -> list[list[ast.Name]] | None:
+        """Groups of words that name one target each, without prepositions and articles."""
+        groups: list[list[ast.Name]] = []
+        fresh = True
+        last: ast.Name | None = None
+        for name in rest:
+            if name.text in words.PREPOSITIONS:
+                fresh, last = True, name
+            elif name.text in words.ARTICLES and name.text not in self.characters:
+                continue
+            elif fresh:
+                groups.append([name])
+                fresh, last = False, None
+            else:
+                groups[-1].append(name)
+        if last is not None:
+            self.report.error("VDS072", last.span, label=f"a name is missing after `{last.text}`")
+            return None
+        return groups
+
+    def target(self, group: list[ast.Name]) -> Target | None:
+        """One target by its word, or by several words that are one name (``bus stop``)."""
+        if len(group) > 1 and self.scope is not None:
+            for joint in ("_", "-"):
+                parts = (joint.join(name.text for name in group),)
+                if len(self.scope.look_up(parts)) == 1:
+                    return self._resolve(ast.Name(parts, group[0].span.to(group[-1].span)))
+        if len(group) > 1:
+            names = " ".join(name.text for name in group)
+            help = f"a second target follows a word like `to`: `{group[0].text} to {group[1].text}`"
+            self.report.error("VDS073", group[1].span, label=f"`{names}` is not one name", help=help)
+            return None
+        return self._resolve(group[0])
+
+    def _resolve(self, name: ast.Name) -> Target | None:
+        return resolve(name, self.characters, self.scope, self.report)
+
+    def _fits(self, node: ast.BeatNode, action: str, definition: DefinitionBase, named: list[Target]) -> bool:
+        """Whether the targets are what the action takes."""
+        wants: str = getattr(definition, "target", "optional")
+        second: str = getattr(definition, "second", "none")
+        kinds: tuple[str, ...] = tuple(getattr(definition, "target_kinds", ()))
+        kind_words = " or ".join(_KIND_WORDS.get(kind, kind) for kind in kinds) or "a target"
+        if wants == "required" and not named:
+            self.report.error(
+                "VDS072", node.span, label=f"`{action}` needs {kind_words}",
+                help=f"as in `({node.words[0].text} {action} …)`",
+            )  # fmt: skip
+            return False
+        if wants == "none" and named:
+            self.report.error(
+                "VDS073", named[0].span, label=f"`{action}` takes no target", help="leave it out"
+            )
+            return False
+        if second == "required" and len(named) == 1:
+            self.report.error(
+                "VDS072", node.span, label=f"`{action}` needs a second target",
+                help=f"as in `({node.words[0].text} {action} {named[0].written} to …)`",
+            )  # fmt: skip
+            return False
+        if second == "none" and len(named) == 2:
+            self.report.error(
+                "VDS073", named[1].span, label=f"`{action}` takes no second target", help="leave it out"
+            )
+            return False
+        if named and kinds and not _kind_fits(named[0], kinds):
+            self.report.error(
+                "VDS074",
+                named[0].span,
+                label=f"`{action}` is done to {kind_words}, `{named[0].written}` is {_is(named[0])}",
+            )
+            return False
+        return True
+
+
+def resolve(
+    name: ast.Name, characters: tuple[str, ...], scope: Scope | None, report: Report
+) -> Target | None:
+    """A character or something in the scene."""
+    if name.text in characters:
+        return Target("character", (name.text,), name.text, name.span)
+    if scope is None:
+        return None
+    near = nearest(name.text, characters)
+    if near is not None and not scope.look_up(name.parts):
+        unknown_character(name, characters, report)
+        return None
+    return scope.find(name, report)
+
+
+def unknown_character(word: ast.Name, characters: tuple[str, ...], report: Report) -> None:
+    """Report a name that is no character's."""
+    meant = nearest(word.text, characters)
+    if characters:
+        help = f"characters are {listing(characters)}"
+    else:
+        help = f"add a line `character {word.text} = woman` above"
+    report.error(
+        "VDS065",
+        word.span,
+        label=f"no character is called `{word.text}`",
+        help=help,
+        suggestion=meant,
+        fix=meant,
+    )
+
+
+def _kind_fits(target: Target, kinds: tuple[str, ...]) -> bool:
+    if target.kind == "character":
+        return "character" in kinds
+    if target.kind == "room":
+        return "place" in kinds
+    return "place" in kinds or "object" in kinds
+
+
+def _is(target: Target) -> str:
+    return {"character": "someone", "room": "a room", "spot": "a place", "object": "a thing"}[target.kind]

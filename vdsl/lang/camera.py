@@ -1,0 +1,188 @@
+"""Camera words into the movements, scales and angles that may be proposed."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TypeAlias
+
+from . import ast, words
+from .diagnostics import Report, listing, nearest
+from .source import Span
+
+SLOTS = ("movement", "scale", "angle")
+_MOST_WORDS = 3  # close up shot
+
+
+@dataclass(frozen=True)
+class CameraWords:
+    """What a camera line says; canonical words. ``said``: slots that were named, not left free."""
+
+    movements: tuple[str, ...]
+    scales: tuple[str, ...]
+    angles: tuple[str, ...]
+    said: frozenset[str]
+
+
+FREE = CameraWords(words.ANY["movement"], words.ANY["scale"], words.ANY["angle"], frozenset())
+
+#: One position of a camera line: a star, or the words of a choice, joined where they were several.
+_Term: TypeAlias = "ast.Star | tuple[tuple[str, Span], ...]"
+
+
+def read_camera(node: ast.CameraNode | None, report: Report) -> CameraWords:
+    """The words of a camera line. Order is free where words say what they are; ``*`` takes the next free slot."""
+    if node is None or not node.words:
+        return FREE
+    found: dict[str, tuple[str, ...]] = {}
+    stars: list[ast.Star] = []
+    for term in _terms(node.words):
+        if isinstance(term, ast.Star):
+            stars.append(term)
+            continue
+        _take(term, found, report)
+    free = [slot for slot in SLOTS if slot not in found]
+    if len(stars) > len(free):
+        report.error(
+            "VDS043", stars[-1].span, label="there is nothing left for this `*`",
+            help="a camera line has a movement, a scale and an angle",
+        )  # fmt: skip
+    return CameraWords(
+        found.get("movement") or words.ANY["movement"],
+        found.get("scale") or words.ANY["scale"],
+        found.get("angle") or words.ANY["angle"],
+        frozenset(slot for slot, value in found.items() if value),
+    )
+
+
+def _terms(items: tuple[ast.Name | ast.Star | ast.Choice, ...]) -> list[_Term]:
+    """Words run together where several make one (``close up``, ``tilt up|tilt down``)."""
+    # A flat list of words with where a choice joins them, then longest matches from the left.
+    flat: list[tuple[str, Span, bool] | ast.Star] = []
+    for item in items:
+        if isinstance(item, ast.Star):
+            flat.append(item)
+            continue
+        for i, part in enumerate(item.items if isinstance(item, ast.Choice) else (item,)):
+            if isinstance(part, ast.Star):
+                flat.append(part)
+            else:
+                flat.append((words.fold(part.span.text), part.span, i > 0))
+    terms: list[_Term] = []
+    i = 0
+    while i < len(flat):
+        piece = flat[i]
+        if isinstance(piece, ast.Star):
+            terms.append(piece)
+            i += 1
+            continue
+        size = _longest(flat, i)
+        run = [part for part in flat[i : i + size] if not isinstance(part, ast.Star)]
+        word = ("-".join(part[0] for part in run), piece[1].to(run[-1][1]))
+        last = terms[-1] if terms else None
+        if piece[2] and isinstance(last, tuple):
+            terms[-1] = (*last, word)
+        else:
+            terms.append((word,))
+        i += size
+    return terms
+
+
+def _longest(flat: list[tuple[str, Span, bool] | ast.Star], start: int) -> int:
+    """How many of the words from ``start`` on make one known word; 1 where none do."""
+    for size in range(_MOST_WORDS, 1, -1):
+        run = flat[start : start + size]
+        if len(run) < size or any(isinstance(part, ast.Star) for part in run):
+            continue
+        if any(part[2] for part in run[1:] if not isinstance(part, ast.Star)):
+            continue
+        word = "-".join(part[0] for part in run if not isinstance(part, ast.Star))
+        if word in words.CAMERA_WORDS or word in words.NOT_YET:
+            return size
+    return 1
+
+
+def _take(term: tuple[tuple[str, Span], ...], found: dict[str, tuple[str, ...]], report: Report) -> None:
+    """Put the words of one term into their slot."""
+    slot: str | None = None
+    meant: list[str] = []
+    for word, span in term:
+        meaning = words.CAMERA_WORDS.get(word)
+        if meaning is None:
+            slot = _unknown(word, span, found, report) or slot
+            continue
+        if word == words.MEDIUM_CLOSE_SHOT[0]:
+            _warn_mcs(span, report)
+        if slot is not None and meaning.slot != slot:
+            report.error(
+                "VDS042", span, label=f"`{span.text}` is {_a(meaning.slot)}, a choice is among {slot}s",
+                help="separate movement, scale and angle with spaces",
+            )  # fmt: skip
+            continue
+        slot = meaning.slot
+        meant.extend(w for w in meaning.words if w not in meant)
+    if slot is None:
+        return
+    if slot in found:
+        span = term[0][1].to(term[-1][1])
+        report.error(
+            "VDS042",
+            span,
+            label=f"this is a second {slot}",
+            help="join choices with a bar, as in push|static",
+        )
+        return
+    found[slot] = tuple(meant)
+
+
+def _unknown(word: str, span: Span, found: dict[str, tuple[str, ...]], report: Report) -> str | None:
+    """Report a word the camera does not understand; its slot where that is plain."""
+    if word in words.NOT_YET:
+        slot, near = words.NOT_YET[word]
+        known = {
+            "movement": tuple(words.ANY["movement"]),
+            "scale": (*words.PAPER_SCALES, "wide"),
+            "angle": words.ANY["angle"],
+        }
+        report.error(
+            "VDS041", span, label=f"`{span.text}` is {_a(slot)} of film grammar that cannot be shot yet",
+            help=words.hint(word) or f"{slot}s now are {listing(known[slot], 20)}", suggestion=near, fix=near,
+        )  # fmt: skip
+        found.setdefault(slot, ())
+        return None
+    meant = nearest(word, [*words.CAMERA_WORDS, *words.NOT_YET])
+    if meant in words.CAMERA_WORDS:
+        meaning = words.CAMERA_WORDS[meant]
+        canonical = meaning.words[0] if len(meaning.words) == 1 else meant
+        report.error(
+            "VDS040", span, label="the camera does not know this word", suggestion=canonical, fix=canonical,
+            help=_slot_help(meaning.slot),
+        )  # fmt: skip
+        found.setdefault(meaning.slot, ())
+        return None
+    free = [slot for slot in SLOTS if slot not in found]
+    report.error(
+        "VDS040",
+        span,
+        label="the camera does not know this word",
+        help=_slot_help(free[0] if free else "movement"),
+    )
+    return None
+
+
+def _slot_help(slot: str) -> str:
+    if slot == "movement":
+        return "movements: static, follow, push, pull, zoom, tilt, pan, dolly, pedestal, arc (and -in, -out, -up, -down, -left, -right)"
+    if slot == "scale":
+        return f"scales: {', '.join(words.PAPER_SCALES)}, wide"
+    return f"angles: {', '.join(words.ANY['angle'])}"
+
+
+def _warn_mcs(span: Span, report: Report) -> None:
+    report.warn(
+        "VDS044", span, label="MCS is a medium close shot, not a cowboy shot; taken as close-up",
+        help="say close-up for head and shoulders, or medium for down to the waist", suggestion="close-up",
+    )  # fmt: skip
+
+
+def _a(word: str) -> str:
+    return f"an {word}" if word[0] in "aeiou" else f"a {word}"

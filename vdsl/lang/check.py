@@ -1,0 +1,433 @@
+"""Script and catalog into a checked storyboard: :func:`check`.
+
+Assumes a script of :func:`vdsl.lang.parse.parse` and a catalog that knows its own definitions.
+Guarantees that every mistake is in the report, and that the storyboard (where there is one) has every
+name resolved and every default filled in. One pass over the statements, top to bottom.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from pathlib import PurePath
+
+from . import ast, words
+from .beats import BeatReader, resolve, unknown_character
+from .catalog import CatalogLike
+from .definitions.types import DefinitionBase, SetNode
+from .diagnostics import Report, listing, nearest
+from .evaluate import evaluate_arguments
+from .files import used_scripts
+from .ids import Ids
+from .ir import Beat, Character, Placement, Scene, Storyboard, StoryLine, Target
+from .scope import ROOMS, Scope, node_at, walk
+from .settings import Settings, read_header
+from .shots import DEFAULT_PROPOSALS, DEFAULT_STYLE, DEFAULT_TAKES, Defaults, LineContext, read_shots
+from .source import Span
+from .transitions import Joins
+
+SHORTEST_PERSON, TALLEST_PERSON = 0.5, 2.6
+
+
+def check(
+    script: ast.Script, catalog: CatalogLike, report: Report, overrides: Settings | None = None
+) -> Storyboard | None:
+    """The checked storyboard, or None where the report has errors. ``overrides`` win over header lines."""
+    checker = _Checker(script, catalog, report, overrides or Settings())
+    storyboard = checker.run()
+    return None if report.has_errors else storyboard
+
+
+@dataclass
+class _Stage:
+    """The scene being read."""
+
+    index: int
+    name: str
+    set_name: str
+    room: tuple[str, ...]
+    time: str
+    scope: Scope | None
+    members: tuple[str, ...]
+    span: Span
+    placements: dict[str, Placement] = field(default_factory=dict)
+    acted: set[str] = field(default_factory=set)
+
+
+class _Checker:
+    def __init__(self, script: ast.Script, catalog: CatalogLike, report: Report, overrides: Settings) -> None:
+        self.script = script
+        self.catalog = catalog
+        self.report = report
+        self.overrides = overrides
+        self.settings = Settings()
+        self.title: ast.Title | None = None
+        self.characters: dict[str, Character] = {}
+        self.stage: _Stage | None = None
+        self.scenes: list[Scene] = []
+        self.lines: list[StoryLine] = []
+        self.ids = Ids()
+        self.joins = Joins(report)
+
+    # -- the whole -------------------------------------------------------------------
+
+    def run(self) -> Storyboard:
+        if not self.script.statements and not self.report.has_errors:
+            span = Span(self.script.source, 0, 0)
+            self.report.error(
+                "VDS034",
+                span,
+                label="there is nothing in this file",
+                help="`vdsc explain VDS034` has a first script to type",
+            )
+        for used in used_scripts(self.script, self.report):
+            for statement in used.statements:
+                if isinstance(statement, ast.CharacterLine):
+                    self._character(statement)
+        self._headers()
+        for index, statement in enumerate(self.script.statements):
+            self._statement(index, statement)
+        self._finish_scene()
+        if not self.lines and self.script.statements and not self.report.has_errors:
+            self._nothing_to_shoot()
+        return self._storyboard()
+
+    def _storyboard(self) -> Storyboard:
+        said, over = self.settings, self.overrides
+        merged = Settings(**{name: getattr(over, name) or getattr(said, name) for name in vars(said)})
+        seed = over.seed if over.seed is not None else said.seed
+        name = self.script.source.name
+        title = self.title.text.value if self.title and self.title.text else PurePath(name).stem
+        return Storyboard(
+            title=title,
+            fps=merged.fps or (24, 1),
+            size=merged.final_size(),
+            seed=seed or 0,
+            rig=merged.rig or "cinema",
+            style=merged.style or DEFAULT_STYLE,
+            characters=tuple(self.characters.values()),
+            scenes=tuple(self.scenes),
+            lines=tuple(self.lines),
+            source_name=name,
+            ending=self.joins.ending(),
+        )
+
+    def _headers(self) -> None:
+        """Headers first: frames in the story are counted at their rate."""
+        begun: ast.Statement | None = None
+        for statement in self.script.statements:
+            if isinstance(statement, ast.SceneLine | ast.StoryNode) and begun is None:
+                begun = statement
+            if isinstance(statement, ast.Header):
+                if begun is not None:
+                    self.report.error(
+                        "VDS035", statement.span, label="header lines stand before the first scene",
+                        help="move it up, below `storyboard`", notes=[(begun.span, "the story begins here")],
+                    )  # fmt: skip
+                read_header(statement, self.settings, self.report)
+        said, over = self.settings, self.overrides
+        self.fps = over.fps or said.fps or (24, 1)
+        self.defaults = Defaults(
+            self.fps,
+            over.proposals or said.proposals or DEFAULT_PROPOSALS,
+            over.takes or said.takes or DEFAULT_TAKES,
+            over.style or said.style or DEFAULT_STYLE,
+        )
+
+    def _statement(self, index: int, statement: ast.Statement) -> None:
+        if isinstance(statement, ast.Title):
+            self._title(statement)
+        elif isinstance(statement, ast.CharacterLine):
+            self._character(statement)
+        elif isinstance(statement, ast.SceneLine):
+            self._scene(index, statement)
+        elif isinstance(statement, ast.PlacementLine):
+            self._placement(statement)
+        elif isinstance(statement, ast.StoryNode):
+            self._story(statement)
+        elif isinstance(statement, ast.TransitionLine):
+            self.joins.take(statement, self.fps, bool(self.lines))
+
+    def _title(self, statement: ast.Title) -> None:
+        if self.title is not None:
+            self.report.error(
+                "VDS035",
+                statement.span,
+                label="a file has one `storyboard` line",
+                notes=[(self.title.span, "first here")],
+            )
+        self.title = statement
+
+    def _nothing_to_shoot(self) -> None:
+        if all(isinstance(s, ast.Definition | ast.FileDefinition | ast.Use) for s in self.script.statements):
+            return  # a file of definitions, for others to use
+        last = self.script.statements[-1].span
+        self.report.error(
+            "VDS034", Span(last.source, last.start, last.end), label="the script ends and nothing has happened yet",
+            help="add a story line, as in `(anna walk door)`",
+        )  # fmt: skip
+
+    # -- characters ------------------------------------------------------------------
+
+    def _character(self, line: ast.CharacterLine) -> None:
+        name = line.name.text
+        if len(line.name.parts) > 1:
+            self.report.error("VDS066", line.name.span, label="a character's name has no dots")
+        if name in self.characters:
+            self.report.error(
+                "VDS066", line.name.span, label=f"there is a character `{name}` already",
+                notes=[(self.characters[name].span, "the first one")],
+            )  # fmt: skip
+            return
+        if isinstance(line.cast, ast.Text):
+            self.report.error(
+                "VDS017", line.cast.span, label="characters from files are not read yet",
+                help=f"take one of the library's: {listing(self.catalog.names('cast'))}",
+            )  # fmt: skip
+            self.characters[name] = Character(name, "", (), line.span)
+            return
+        callee = line.cast.callee if isinstance(line.cast, ast.Call) else line.cast
+        arguments: dict[str, float | str] = {}
+        cast = self._definition("cast", callee)
+        if cast is not None and isinstance(line.cast, ast.Call):
+            arguments = evaluate_arguments(line.cast.arguments, cast.parameters, {}, self.report, callee.text)
+            self._height(line.cast, arguments)
+        self.characters[name] = Character(name, callee.text, tuple(arguments.items()), line.span)
+
+    def _height(self, call: ast.Call, arguments: dict[str, float | str]) -> None:
+        height = arguments.get("height")
+        if isinstance(height, float) and not SHORTEST_PERSON <= height <= TALLEST_PERSON:
+            span = next(a.span for a in call.arguments if a.name.text == "height")
+            self.report.error(
+                "VDS067",
+                span,
+                label=f"nobody is {height:g}m tall",
+                help=f"from {SHORTEST_PERSON:g}m to {TALLEST_PERSON:g}m",
+            )
+
+    def _definition(self, kind: str, name: ast.Name) -> DefinitionBase | None:
+        """A definition by name; an unknown one is reported."""
+        names = self.catalog.names(kind)
+        if name.text in names:
+            return self.catalog.get(kind, name.text)
+        meant = nearest(name.text, names)
+        what = {"cast": "cast member", "set": "set"}[kind]
+        self.report.error(
+            "VDS064" if kind == "cast" else "VDS062", name.span, label=f"no {what} is called `{name.text}`",
+            help=f"there are {listing(names, 20)}", suggestion=meant, fix=meant,
+        )  # fmt: skip
+        return None
+
+    # -- scenes ----------------------------------------------------------------------
+
+    def _scene(self, index: int, line: ast.SceneLine) -> None:
+        self._finish_scene()
+        if len(line.name.parts) > 1 and line.set is not None:
+            self.report.error("VDS063", line.name.span, label="a scene's name has no dots")
+        earlier = next((s for s in self.scenes if s.name == line.name.text), None)
+        time = self._time(line.time)
+        written = line.set or line.name
+        if line.set is None and earlier is not None:
+            set_name, room, default = earlier.set, earlier.room, earlier.time
+            root = getattr(self.catalog.get("set", set_name), "root", None)
+        else:
+            set_name, room, default, root = self._set(written)
+        scope = Scope(root, room, self.catalog) if root is not None else None
+        name = line.name.parts[-1] if line.set is None else line.name.text
+        members = self._members(index)
+        self.stage = _Stage(
+            len(self.scenes), name, set_name, room, time or default, scope, members, line.span
+        )
+
+    def _time(self, time: ast.Name | None) -> str | None:
+        if time is None or time.text in words.TIMES:
+            return time.text if time else None
+        meant = nearest(time.text, words.TIMES)
+        self.report.error(
+            "VDS063", time.span, label=f"`{time.text}` is no time of day", help=f"it may be {listing(words.TIMES)}",
+            suggestion=meant, fix=meant,
+        )  # fmt: skip
+        return None
+
+    def _set(self, written: ast.Name) -> tuple[str, tuple[str, ...], str, SetNode | None]:
+        """Name, room, time of day and tree of the set a scene is in."""
+        name = ast.Name(
+            written.parts[:1],
+            Span(written.span.source, written.span.start, written.span.start + len(written.parts[0])),
+        )
+        if name.text not in self.catalog.names("set") and (near := self._room_elsewhere(written)):
+            self.report.error(
+                "VDS062", written.span, label=f"no set is called `{written.text}`", help="say which set the room is in",
+                suggestion=near, fix=near,
+            )  # fmt: skip
+            return name.text, (), "day", None
+        definition = self._definition("set", name)
+        root: SetNode | None = getattr(definition, "root", None)
+        time = str(getattr(definition, "time", "day"))
+        if root is None:
+            return name.text, (), time, None
+        room = written.parts[1:]
+        node = node_at(root, room)
+        if node is None or node.kind not in ROOMS:
+            rooms = [".".join((root.name, *path)) for path, each in walk(root) if each.kind in ROOMS and path]
+            meant = nearest(written.text, rooms)
+            self.report.error(
+                "VDS062", written.span, label=f"`{name.text}` has no room `{'.'.join(room)}`",
+                help=f"it has {listing(rooms)}" if rooms else "it has no rooms", suggestion=meant, fix=meant,
+            )  # fmt: skip
+            return name.text, (), time, None
+        return name.text, room, time, root
+
+    def _room_elsewhere(self, written: ast.Name) -> str | None:
+        """The full name of a room that was named without its set."""
+        for name in self.catalog.names("set"):
+            root = getattr(self.catalog.get("set", name), "root", None)
+            if root is not None and (node := node_at(root, written.parts)) is not None and node.kind in ROOMS:
+                return ".".join((name, *written.parts))
+        return None
+
+    def _members(self, index: int) -> tuple[str, ...]:
+        """Everyone placed or named until the next scene: those placed first, then in order."""
+        placed: dict[str, None] = {}
+        named: dict[str, None] = {}
+        for statement in self.script.statements[index + 1 :]:
+            if isinstance(statement, ast.SceneLine):
+                break
+            if isinstance(statement, ast.PlacementLine):
+                placed[statement.character.text] = None
+            elif isinstance(statement, ast.StoryNode):
+                named.update((w.text, None) for beat in statement.beats for w in beat.words)
+        known = {*self.characters, *self._later_characters(index)}
+        return tuple(name for name in {**placed, **named} if name in known)
+
+    def _later_characters(self, index: int) -> list[str]:
+        rest = self.script.statements[index + 1 :]
+        return [s.name.text for s in rest if isinstance(s, ast.CharacterLine)]
+
+    def _finish_scene(self) -> None:
+        """Close the scene being read: everyone in it has a place."""
+        stage = self.stage
+        if stage is None:
+            return
+        placements = tuple(stage.placements[name] for name in stage.members if name in stage.placements)
+        self.scenes.append(Scene(stage.name, stage.set_name, stage.room, stage.time, placements, stage.span))
+        self.stage = None
+
+    # -- placement -------------------------------------------------------------------
+
+    def _placement(self, line: ast.PlacementLine) -> None:
+        name = line.character.text
+        if name not in self.characters:
+            unknown_character(line.character, tuple(self.characters), self.report)
+            return
+        stage = self._need_stage(line.span)
+        if stage is None:
+            return
+        if name in stage.placements and stage.placements[name].at.kind != "free":
+            self.report.error(
+                "VDS068", line.span, label=f"{name} is placed already", help="in a scene everyone is placed once",
+                notes=[(stage.placements[name].span, "first here")],
+            )  # fmt: skip
+            return
+        if name in stage.acted:
+            self.report.error(
+                "VDS068", line.span, label=f"{name} has acted already, and is where that left them",
+                help="place people before the first story line, or let them walk",
+            )  # fmt: skip
+            return
+        self._place(name, line, stage)
+
+    def _place(self, name: str, line: ast.PlacementLine, stage: _Stage) -> None:
+        posture = line.posture.text if line.posture else "standing"
+        at: Target | None = Target("free", (), "", line.span)
+        if line.at is not None:
+            at = resolve(line.at, (), stage.scope, self.report)
+        facing = None
+        if line.facing is not None:
+            facing = resolve(line.facing, tuple(self.characters), stage.scope, self.report)
+        if (
+            at is not None
+            and posture == "sitting"
+            and stage.scope is not None
+            and not self._seat(at, stage.scope)
+        ):
+            place = line.at or line.posture or line.character
+            seats = stage.scope.seats()
+            self.report.error(
+                "VDS069", place.span, label=f"one cannot sit at `{place.text}`" if line.at else "sit where?",
+                help=f"there are {listing(dict.fromkeys(seats))} to sit on" if seats else "this scene has no seats",
+            )  # fmt: skip
+        free = Target("free", (), "", line.span)
+        stage.placements[name] = Placement(name, at or free, facing, posture, line.span)
+
+    def _seat(self, at: Target, scope: Scope) -> bool:
+        return at.kind not in ("free", "character") and scope.has_seat(at)
+
+    def _need_stage(self, span: Span) -> _Stage | None:
+        if self.stage is None and not any(s.name == "" for s in self.scenes):
+            sets = self.catalog.names("set")
+            self.report.error(
+                "VDS063", span, label="no scene has begun",
+                help=f"put a line like `scene {sets[0]}` above" if sets else "put a `scene` line above",
+            )  # fmt: skip
+        return self.stage
+
+    # -- the story -------------------------------------------------------------------
+
+    def _story(self, node: ast.StoryNode) -> None:
+        stage = self._need_stage(node.span)
+        if stage is None:
+            return
+        names = tuple(self.characters)
+        reader = BeatReader(self.catalog, names, stage.scope, self.report)
+        beats = [self._beat(reader, each, stage) for each in node.beats]
+        done = tuple(beat for beat in beats if beat is not None)
+        self._together(done)
+        context = LineContext(
+            stage.name,
+            done,
+            self._subject(done, stage),
+            lambda name: resolve(name, names, stage.scope, self.report),
+        )
+        shots = read_shots(node, context, self.defaults, self.ids, self.report)
+        self.lines.append(StoryLine(stage.index, done, shots, self.joins.give(), node.span))
+
+    def _beat(self, reader: BeatReader, node: ast.BeatNode, stage: _Stage) -> Beat | None:
+        for word in node.words:
+            if word.text in self.characters:
+                self._appear(word, stage)
+        beat = reader.read(node)
+        stage.acted.add(node.words[0].text)
+        return beat
+
+    def _appear(self, word: ast.Name, stage: _Stage) -> None:
+        """Someone takes part; without a place they get the first free spot."""
+        if word.text in stage.placements:
+            return
+        if stage.scope is not None:
+            self.report.warn(
+                "VDS079", word.span, label=f"{word.text} has not been placed in scene {stage.name}",
+                help=f"a line like `{word.text} at NAME` above says where; without it the first free spot is taken",
+            )  # fmt: skip
+        free = Target("free", (), "", word.span)
+        stage.placements[word.text] = Placement(word.text, free, None, "standing", word.span)
+
+    def _together(self, beats: tuple[Beat, ...]) -> None:
+        """Nobody does two things at once."""
+        seen: dict[str, Beat] = {}
+        for beat in beats:
+            if beat.character in seen:
+                self.report.error(
+                    "VDS076", beat.span, label=f"{beat.character} does two things at once",
+                    help="put it on a line of its own", notes=[(seen[beat.character].span, "the first")],
+                )  # fmt: skip
+            seen[beat.character] = beat
+
+    def _subject(self, beats: tuple[Beat, ...], stage: _Stage) -> Target | None:
+        """Whom the camera is about: who acts, else the first one in the scene."""
+        if beats:
+            who, span = beats[0].character, beats[0].span
+        elif stage.members:
+            who, span = stage.members[0], stage.span
+        else:
+            return None
+        return Target("character", (who,), who, span)

@@ -1,0 +1,212 @@
+"""Names of places and things in a scene: inside the scene first, then outward.
+
+A :class:`Scope` is one scene's view of its set. A name is looked for in the scene's node, then in the
+node around it, up to the set; at each of these the shallowest find wins, and several at the same
+depth are ambiguous. Names of nodes and of spots the set gives come before the spots of props.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from .ast import Name
+from .catalog import CatalogLike
+from .definitions.types import SetNode
+from .diagnostics import Report, listing, nearest
+from .ir import Target
+
+ROOMS = ("set", "room", "area")
+
+
+@dataclass(frozen=True)
+class Found:
+    """A place in the set's tree: ``path`` from the root (without the set's name); ``spot`` is its last part."""
+
+    path: tuple[str, ...]
+    node: SetNode
+    spot: bool
+
+    @property
+    def kind(self) -> str:
+        if self.spot:
+            return "spot"
+        return "room" if self.node.kind in ROOMS else "object"
+
+
+class Scope:
+    """The names a scene sees. ``root`` is the set's tree, ``room`` the scene's path inside it."""
+
+    def __init__(self, root: SetNode, room: tuple[str, ...], catalog: CatalogLike) -> None:
+        self.root = root
+        self.room = room
+        self._catalog = catalog
+        self._cache: dict[tuple[str, ...], list[Found]] = {}
+
+    def find(self, name: Name, report: Report) -> Target | None:
+        """The target a name stands for; None where it was reported to be unknown or ambiguous."""
+        found = self.look_up(name.parts)
+        if len(found) == 1:
+            return Target(found[0].kind, found[0].path, name.text, name.span)
+        if found:
+            paths = [".".join((self.root.name, *f.path)) for f in found]
+            report.error(
+                "VDS061", name.span, label=f"`{name.text}` could be any of {len(found)}",
+                help=f"say which: {listing(paths)}", suggestion=self._shortest(found[0]),
+            )  # fmt: skip
+            return None
+        self._unknown(name, report)
+        return None
+
+    def look_up(self, parts: tuple[str, ...]) -> list[Found]:
+        """Everything the parts of a name may mean; one where it is plain, none where it is unknown."""
+        if parts not in self._cache:
+            self._cache[parts] = self._search(parts)
+        return self._cache[parts]
+
+    def _search(self, parts: tuple[str, ...]) -> list[Found]:
+        if parts[0] == self.root.name:
+            if len(parts) == 1:
+                return [Found((), self.root, False)]
+            inner = self._under(self.root, (), parts[1:], True)
+            if inner:
+                return inner
+        for size in range(len(self.room), -1, -1):
+            node = node_at(self.root, self.room[:size])
+            if node is None:
+                continue
+            if parts == (node.name,) and size:
+                return [Found(self.room[:size], node, False)]
+            for deep in (False, True):
+                found = self._shallowest(node, self.room[:size], parts, deep)
+                if found:
+                    return found
+        return []
+
+    def _shallowest(
+        self, node: SetNode, path: tuple[str, ...], parts: tuple[str, ...], props: bool
+    ) -> list[Found]:
+        """Matches below a node, of the least depth at which there are any."""
+        level = [(path, node)]
+        while level:
+            found: list[Found] = []
+            for at, each in level:
+                found.extend(self._under(each, at, parts, props))
+            nodes = [f for f in found if not f.spot]
+            if found:
+                return nodes or found
+            level = [((*at, child.name), child) for at, each in level for child in each.children]
+        return []
+
+    def _under(
+        self, node: SetNode, path: tuple[str, ...], parts: tuple[str, ...], props: bool
+    ) -> list[Found]:
+        """What the parts mean read from directly below ``node``, part for part."""
+        if len(parts) == 1 and parts[0] in self._spots(node, props):
+            spots = [Found((*path, parts[0]), node, True)]
+        else:
+            spots = []
+        found: list[Found] = []
+        for child in node.children:
+            if child.name != parts[0]:
+                continue
+            here = (*path, child.name)
+            if len(parts) == 1:
+                found.append(Found(here, child, False))
+            else:
+                found.extend(self._under(child, here, parts[1:], True))
+        return found or spots
+
+    def _spots(self, node: SetNode, props: bool) -> tuple[str, ...]:
+        return (*node.spots, *self.prop_spots(node)) if props else node.spots
+
+    def prop_spots(self, node: SetNode) -> tuple[str, ...]:
+        """Spots that come with the prop placed at a node."""
+        if node.prop is None:
+            return ()
+        prop = self._catalog.get("prop", node.prop)
+        return tuple(getattr(prop, "spots", ()))
+
+    def node_of(self, target: Target) -> SetNode | None:
+        """The tree's node of a target (for a spot, the node it is on)."""
+        path = target.path[:-1] if target.kind == "spot" else target.path
+        return node_at(self.root, path)
+
+    def has_seat(self, target: Target) -> bool:
+        """Whether one can sit at a target."""
+        if target.kind == "spot":
+            return target.path[-1].startswith("seat")
+        node = self.node_of(target)
+        return node is not None and any(s.startswith("seat") for s in (*node.spots, *self.prop_spots(node)))
+
+    def seats(self) -> tuple[str, ...]:
+        """Names of what one can sit on, in the scene."""
+        top = node_at(self.root, self.room) or self.root
+        return tuple(
+            node.name
+            for _, node in walk(top, self.room)
+            if any(s.startswith("seat") for s in (*node.spots, *self.prop_spots(node)))
+        )
+
+    def _unknown(self, name: Name, report: Report) -> None:
+        top = node_at(self.root, self.room) or self.root
+        near = _names(top)
+        every = _names(self.root)
+        if len(name.parts) > 1:
+            self._unknown_part(name, report)
+            return
+        meant = nearest(name.text, near) or nearest(name.text, every)
+        things = [n for n in near if n != top.name]
+        report.error(
+            "VDS060", name.span, label=f"nothing is called `{name.text}` here",
+            help=f"the scene has {listing(things)}" if things else None, suggestion=meant, fix=meant,
+        )  # fmt: skip
+
+    def _unknown_part(self, name: Name, report: Report) -> None:
+        """Of a dotted name, say which part is wrong."""
+        for size in range(len(name.parts) - 1, 0, -1):
+            found = self.look_up(name.parts[:size])
+            if len(found) != 1:
+                continue
+            node = found[0].node
+            inside = [c.name for c in node.children] + list(self._spots(node, True))
+            part = name.parts[size]
+            meant = nearest(part, inside)
+            whole = ".".join(name.parts[:size])
+            report.error(
+                "VDS060", name.span, label=f"`{whole}` has no `{part}`",
+                help=f"it has {listing(dict.fromkeys(inside))}" if inside else "it has no parts or spots",
+                suggestion=f"{whole}.{meant}" if meant else None, fix=f"{whole}.{meant}" if meant else None,
+            )  # fmt: skip
+            return
+        first = name.parts[0]
+        meant = nearest(first, _names(self.root))
+        report.error("VDS060", name.span, label=f"nothing is called `{first}` here", suggestion=meant)
+
+    def _shortest(self, found: Found) -> str:
+        """The shortest dotted name that means this and nothing else."""
+        for size in range(1, len(found.path) + 1):
+            parts = found.path[-size:]
+            if [f.path for f in self.look_up(parts)] == [found.path]:
+                return ".".join(parts)
+        return ".".join((self.root.name, *found.path))
+
+
+def node_at(root: SetNode, path: tuple[str, ...]) -> SetNode | None:
+    """The node at a path from the root, or None."""
+    node: SetNode | None = root
+    for part in path:
+        node = next((child for child in node.children if child.name == part), None) if node else None
+    return node
+
+
+def walk(node: SetNode, path: tuple[str, ...] = ()) -> Iterator[tuple[tuple[str, ...], SetNode]]:
+    """A node and everything below it, with paths."""
+    yield path, node
+    for child in node.children:
+        yield from walk(child, (*path, child.name))
+
+
+def _names(node: SetNode) -> list[str]:
+    """Names of nodes and their spots below a node, each once."""
+    return list(dict.fromkeys(name for _, each in walk(node) for name in (each.name, *each.spots)))

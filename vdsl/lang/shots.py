@@ -1,0 +1,138 @@
+"""Cameras of one line into :class:`vdsl.lang.ir.Shot`: words, options, defaults and ids."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+from . import ast, words
+from .camera import FREE, CameraWords, read_camera
+from .diagnostics import Report
+from .ids import Ids
+from .ir import MOVEMENT_FAMILIES, Beat, Shot, Target
+from .options import ShotOptions, read_options
+
+DEFAULT_LENS = (30.0, 80.0)  # the paper's, section 3.2
+DEFAULT_PROPOSALS = 80
+DEFAULT_TAKES = 5
+DEFAULT_STYLE = "board"
+
+
+@dataclass(frozen=True)
+class Defaults:
+    """What a shot takes where its line says nothing."""
+
+    fps: tuple[int, int]
+    proposals: int
+    takes: int
+    style: str
+
+
+@dataclass(frozen=True)
+class LineContext:
+    """What a line's shots need to know of it.
+
+    subject: whom the camera is about unless told otherwise, None where nobody is there
+    resolve: finds the target of ``focus``
+    """
+
+    scene: str
+    beats: tuple[Beat, ...]
+    subject: Target | None
+    resolve: Callable[[ast.Name], Target | None]
+
+
+def read_shots(
+    node: ast.StoryNode, context: LineContext, defaults: Defaults, ids: Ids, report: Report
+) -> tuple[Shot, ...]:
+    """All shots of one line; one that is free in everything where no camera is written."""
+    shared = read_options(node.options, defaults.fps, report)
+    cameras: Sequence[ast.CameraNode | None] = node.cameras or (None,)
+    shots = []
+    for camera in cameras:
+        said = read_camera(camera, report)
+        own = read_options(camera.options, defaults.fps, report) if camera else ShotOptions()
+        said = _fitting(camera, said, not context.beats, context.subject, report)
+        base = _line_words(context)
+        if len(cameras) > 1:
+            base = [*base, *_camera_words(said)]
+        shots.append(_shot(ids.take(base), node, camera, said, own, shared, context, defaults))
+    return tuple(shots)
+
+
+def _fitting(
+    camera: ast.CameraNode | None,
+    said: CameraWords,
+    establishing: bool,
+    subject: Target | None,
+    report: Report,
+) -> CameraWords:
+    """Free words narrowed to what suits the line: a place is shown wide, and no one is followed who is not there."""
+    movements, scales = said.movements, said.scales
+    if establishing and "scale" not in said.said:
+        scales = ("wide", "full")
+    if establishing:
+        if "movement" not in said.said:
+            movements = tuple(m for m in movements if m != "follow")
+        elif movements == ("follow",) and camera is not None:
+            report.error(
+                "VDS045", camera.span, label="nobody acts on this line, so there is no one to follow",
+                help="put it below a story line, or take another movement",
+            )  # fmt: skip
+    return CameraWords(movements, scales, said.angles, said.said)
+
+
+def _shot(
+    id: str,
+    node: ast.StoryNode,
+    camera: ast.CameraNode | None,
+    said: CameraWords,
+    own: ShotOptions,
+    shared: ShotOptions,
+    context: LineContext,
+    defaults: Defaults,
+) -> Shot:
+    focus = own.focus or shared.focus
+    span = camera.span if camera else node.span
+    return Shot(
+        id=id,
+        line=span.line_number,
+        movements=said.movements,
+        scales=said.scales,
+        angles=said.angles,
+        lens=own.lens or shared.lens or DEFAULT_LENS,
+        ease=own.ease or shared.ease or tuple(sorted(set(words.EASES.values()))),
+        duration=own.duration or shared.duration,
+        roll=own.roll if own.roll is not None else shared.roll or 0.0,
+        focus=context.resolve(focus) if focus is not None else context.subject,
+        say=own.say if own.say is not None else shared.say,
+        note=own.note if own.note is not None else shared.note,
+        proposals=own.proposals or shared.proposals or defaults.proposals,
+        takes=own.takes or shared.takes or defaults.takes,
+        speed=own.speed or shared.speed or 1.0,
+        style=own.style or shared.style or defaults.style,
+        span=span,
+    )
+
+
+def _line_words(context: LineContext) -> list[str]:
+    """The words of a line's id."""
+    found = [context.scene]
+    for beat in context.beats:
+        found += [beat.character, beat.action]
+        found += [t.written for t in (beat.target, beat.second) if t is not None]
+    return found if context.beats else [*found, "establishing"]
+
+
+def _camera_words(said: CameraWords) -> list[str]:
+    """The words of a camera in an id: a family by its name, what is free left out."""
+    found = []
+    for slot, values in (("movement", said.movements), ("scale", said.scales), ("angle", said.angles)):
+        if slot not in said.said:
+            continue
+        family = next((name for name, members in MOVEMENT_FAMILIES.items() if members == values), None)
+        found.append(family.replace("/", "-") if family else "-".join(values))
+    return found or ["free"]
+
+
+__all__ = ["FREE", "Defaults", "LineContext", "read_shots"]

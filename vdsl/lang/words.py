@@ -1,0 +1,120 @@
+"""The words of the camera: what each may be called, and what it stands for.
+
+Canonical words are those of :mod:`vdsl.lang.ir`. Words are compared folded: lower case, ``_`` and
+spaces as ``-``. The longest run of words wins, so ``tilt up`` is one word.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from . import ir
+
+PAPER_SCALES = ("close-up", "medium", "full")
+
+
+@dataclass(frozen=True)
+class Meaning:
+    """What a word means: its slot (movement, scale or angle) and the canonical words it stands for."""
+
+    slot: str
+    words: tuple[str, ...]
+
+
+_MOVEMENTS: dict[str, str] = {
+    "static": "static still fixed locked locked-off lock-off hold stationary",
+    "follow": "follow following track tracking follow-shot",
+    "push": "push push-in dolly-in truck-in track-in move-in",
+    "pull": "pull pull-out pull-back push-out dolly-out truck-out track-out move-out",
+    "zoom-in": "zoom-in",
+    "zoom-out": "zoom-out",
+    "zoom-in|zoom-out": "zoom",
+    "tilt-up": "tilt-up",
+    "tilt-down": "tilt-down",
+    "tilt-up|tilt-down": "tilt",
+    "pan-left": "pan-left",
+    "pan-right": "pan-right",
+    "pan-left|pan-right": "pan",
+    "dolly-left": "dolly-left truck-left crab-left slide-left",
+    "dolly-right": "dolly-right truck-right crab-right slide-right",
+    "dolly-left|dolly-right": "dolly truck crab slide",
+    "pedestal-up": "pedestal-up boom-up ped-up rise",
+    "pedestal-down": "pedestal-down boom-down ped-down",
+    "pedestal-up|pedestal-down": "pedestal boom ped",
+    "arc-left": "arc-left orbit-left",
+    "arc-right": "arc-right orbit-right",
+    "arc-left|arc-right": "arc orbit around",
+}
+_SCALES: dict[str, str] = {
+    "close-up": "close-up closeup close cu close-shot",
+    "medium": "medium ms mid medium-shot mid-shot waist waist-shot",
+    "full": "full fs full-shot full-body",
+    "wide": "wide ws ls long wide-shot long-shot",
+}
+_ANGLES: dict[str, str] = {
+    "eye-level": "eye-level eye eyelevel level eyes",
+    "high-angle": "high-angle high highangle from-above",
+    "low-angle": "low-angle low lowangle from-below",
+}
+#: Words of film grammar that are not built yet, and the nearest that is.
+NOT_YET: dict[str, tuple[str, str]] = {
+    "extreme-close-up": ("scale", "close-up"), "ecu": ("scale", "close-up"), "xcu": ("scale", "close-up"),
+    "big-close-up": ("scale", "close-up"), "bcu": ("scale", "close-up"),
+    "medium-close-up": ("scale", "close-up"), "mcu": ("scale", "close-up"), "bust": ("scale", "close-up"),
+    "cowboy": ("scale", "medium"), "american": ("scale", "medium"),
+    "medium-long": ("scale", "full"), "mls": ("scale", "full"), "mws": ("scale", "full"),
+    "extreme-wide": ("scale", "wide"), "ews": ("scale", "wide"), "els": ("scale", "wide"),
+    "overhead": ("angle", "high-angle"), "birds-eye": ("angle", "high-angle"), "top-down": ("angle", "high-angle"),
+    "worms-eye": ("angle", "low-angle"), "shoulder-level": ("angle", "eye-level"),
+    "hip-level": ("angle", "low-angle"), "knee-level": ("angle", "low-angle"), "ground-level": ("angle", "low-angle"),
+    "dutch": ("angle", "eye-level"), "ots": ("angle", "eye-level"), "pov": ("angle", "eye-level"),
+    "two-shot": ("scale", "medium"),
+    "crane": ("movement", "pedestal"), "roll": ("movement", "static"), "dolly-zoom": ("movement", "push"),
+    "handheld": ("movement", "follow"), "whip-pan": ("movement", "pan"), "rack-focus": ("movement", "static"),
+}  # fmt: skip
+_HINTS = {
+    "dutch": "tilt the picture with the option `roll 12deg`",
+    "roll": "tilt the picture with the option `roll 12deg`",
+}
+
+#: Medium close shot, often mistaken for cowboy; taken as the nearest size there is.
+MEDIUM_CLOSE_SHOT = ("mcs", "close-up")
+
+
+def _table() -> dict[str, Meaning]:
+    found: dict[str, Meaning] = {}
+    for slot, words in (("movement", _MOVEMENTS), ("scale", _SCALES), ("angle", _ANGLES)):
+        for canonical, aliases in words.items():
+            for alias in aliases.split():
+                found[alias] = Meaning(slot, tuple(canonical.split("|")))
+    found[MEDIUM_CLOSE_SHOT[0]] = Meaning("scale", (MEDIUM_CLOSE_SHOT[1],))
+    return found
+
+
+#: Every word the camera understands, folded.
+CAMERA_WORDS: dict[str, Meaning] = _table()
+
+#: What ``*`` and an omitted word stand for.
+ANY: dict[str, tuple[str, ...]] = {
+    "movement": ir.MOVEMENTS,
+    "scale": PAPER_SCALES,
+    "angle": ir.ANGLES,
+}
+
+EASES: dict[str, float] = {"slow-in": 10.0, "slow-out": 0.1, "linear": 1.0, "ease-in": 10.0, "ease-out": 0.1}
+SPEEDS: dict[str, float] = {"slow": 0.7, "calm": 0.85, "normal": 1.0, "brisk": 1.3, "fast": 1.6}
+TIMES = ("dawn", "day", "dusk", "night")
+STYLES = ("board", "clay", "ink")
+RIGS = ("cinema", "paper")
+PREPOSITIONS = ("to", "at", "with", "from", "in", "into", "on", "onto")
+ARTICLES = ("the", "a", "an")
+
+
+def fold(word: str) -> str:
+    """A word as the tables have it."""
+    return word.casefold().replace("_", "-").replace(" ", "-")
+
+
+def hint(word: str) -> str | None:
+    """A further word of help for one that is not built yet."""
+    return _HINTS.get(word)

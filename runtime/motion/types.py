@@ -20,18 +20,7 @@ Point = tuple[float, float, float]
 #: Where a reach may lead, apart from ``target`` and ``second``: places on one's own body, and the
 #: point between two people where hands meet.
 BODY_PLACES = (
-    "mouth",
-    "ear",
-    "chin",
-    "chest",
-    "hip",
-    "head",
-    "heart",
-    "belly",
-    "eyes",
-    "elbow",
-    "lap",
-    "front",
+    *("mouth", "ear", "chin", "chest", "hip", "head", "heart", "belly", "eyes", "elbow", "lap", "front"),
 )
 REACH_PLACES = ("target", "second", "meet", *BODY_PLACES)
 #: Where eyes may rest: ``partner`` is the other person of the action, ``held`` the thing in the hand.
@@ -120,6 +109,7 @@ class Reach:
 
     hand: one of :data:`HANDS`; to: one of :data:`REACH_PLACES`
     offset: metres ahead of, to the outside of and above the place, seen from the person
+    palm: where the palm faces: ``side`` (inward), ``down``, ``up``
     """
 
     hand: str
@@ -129,6 +119,7 @@ class Reach:
     leave: float
     end: float
     offset: Point = (0.0, 0.0, 0.0)
+    palm: str = "side"
 
 
 @dataclass(frozen=True)
@@ -142,10 +133,8 @@ class Grasp:
 
 @dataclass(frozen=True)
 class Tilt:
-    """The held thing tips forward by ``angle``: begins at ``start``, is there ``arrive``..``leave``, back at ``end``.
-
-    to: ``target``: over the target; ``mouth``: towards oneself
-    """
+    """The held thing tips towards the palm by ``angle``: from ``start`` on, fully ``arrive``..``leave``,
+    upright again at ``end``."""
 
     hand: str
     angle: float
@@ -153,7 +142,6 @@ class Tilt:
     arrive: float
     leave: float
     end: float
-    to: str = "target"
 
 
 @dataclass(frozen=True)

@@ -1,0 +1,324 @@
+"""A planned person over all frames: the layers of motion, laid over each other, as a posed figure.
+
+Order of layers: standing and sitting, gait, idling (breath, weight, wandering), clip keys, gaze, then
+contact by inverse kinematics. :class:`Performer` is called stage by stage because some stages need what
+other people do in the one before.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from runtime.body.skeleton import JOINT
+
+from .channels import Channels
+from .contacts import Contacts, HandTracks
+from .curves import below, delayed, plateau, ramp, smooth, wander
+from .face import GazePull, Look, blinks, look, speech
+from .figure import MIRROR, ArmPose, Figure, HandGoals, palm_rotation
+from .gait import ankle_positions, sit_clearance
+from .plan import Plan
+from .rotations import wrap
+
+Array = NDArray[np.float64]
+
+
+class Performer:
+    """One person over T frames at times ``t`` [T]."""
+
+    def __init__(self, plan: Plan, t: Array, fps: float, rng: np.random.Generator) -> None:
+        self.plan, self.t, self.fps, self.rng = plan, t, fps, rng
+        self.skeleton = plan.actor.skeleton
+        self.frames = len(t)
+        self.height = self.skeleton.height
+        self.root, self.yaw = plan.route.root(t)
+        self.sitting = plan.route.sitting(t)
+        self.floor = plan.route.floor
+        first = plan.actor.state.seat
+        self.seat_height = plan.route.seat_height(t, first) - self.floor
+        self.feet = plan.route.feet(t)
+        self.channels = Channels(self.frames)
+        for window in plan.windows:
+            self.channels.perform(window.timeline, window.start, window.duration, t, fps, window.hands)
+        self.figure = Figure(self.skeleton, self.frames)
+        self._speed()
+        self._idle()
+
+    # -- what others may ask before any pose is made ---------------------------------------
+
+    def eye_point(self) -> Array:
+        """[T, 3] about where this person's eyes are, from the plan alone."""
+        bind = self.skeleton.bind
+        eye = bind[JOINT["eye_l"]][2]
+        seated = self.seat_height + sit_clearance(self.skeleton) + eye - bind[JOINT["thigh_l"]][2]
+        z = self.floor + eye + self.sitting * (seated - eye)
+        return np.concatenate([self.root, z[:, None]], axis=1)
+
+    # -- layers ------------------------------------------------------------------------------
+
+    def _speed(self) -> None:
+        ahead = np.stack([np.cos(self.yaw), np.sin(self.yaw)], axis=1)
+        velocity = np.gradient(self.root, axis=0) * self.fps if self.frames > 1 else np.zeros_like(self.root)
+        self.pace = smooth(np.sum(velocity * ahead, axis=1), 0.08 * self.fps)
+        self.push = smooth(
+            np.gradient(self.pace) * self.fps if self.frames > 1 else self.pace, 0.1 * self.fps
+        )
+        turning = np.abs(np.gradient(self.yaw) * self.fps) if self.frames > 1 else np.zeros(self.frames)
+        moving = np.linalg.norm(velocity, axis=1) + 0.3 * turning
+        self.still = 1.0 - smooth(np.clip(moving / 0.25, 0, 1), 0.2 * self.fps)
+        self.run = smooth(self.feet.run.max(axis=0) * np.clip(self.pace / 1.5, 0, 1), 0.12 * self.fps)
+        offset = self.feet.place[..., :2] - self.root
+        along = np.einsum("ktc,tc->kt", offset, ahead)
+        moved = (1.0 - self.still) * (1.0 - self.sitting)
+        self.lead = smooth((along[0] - along[1]) * moved, 0.05 * self.fps)  # left foot ahead of the right
+
+    def _idle(self) -> None:
+        t, rng = self.t, self.rng
+        calm = self.still
+        breath = np.sin(2 * np.pi * t / rng.uniform(3.2, 4.4) + rng.uniform(0, 6.3))
+        self.breath = breath
+        self.sway = 0.017 * wander(t, rng, 6.5) * calm * (1 - 0.8 * self.sitting)
+        self.twirl = 0.035 * wander(t, rng, 7.5) * calm
+        self.nodding = 0.02 * wander(t, rng, 4.0)
+        self.turning = 0.045 * wander(t, rng, 5.0) * calm
+        self.tilting = 0.03 * wander(t, rng, 6.0)
+        self.rest = np.array([0.25, 0.25])[:, None] + 0.06 * rng.standard_normal((2, 1))
+        self.arm_noise = np.stack([0.02 * wander(t, rng, 4.5), 0.02 * wander(t, rng, 5.5)])
+
+    # -- torso ----------------------------------------------------------------------------
+
+    def gaze(self, pulls: list[GazePull]) -> None:
+        """Sets where to look, before the torso is posed."""
+        ahead = delayed(self.yaw, -0.35 * self.fps)
+        curve = (ahead - self.yaw) * 0.8
+        walk = GazePull(curve, np.full(self.frames, 0.06), np.ones(self.frames), 0.75)
+        self.look: Look = look([walk, *pulls], self.frames, self.fps)
+
+    def torso(self, lean: Array, twist: Array, drop: Array, forward: Array) -> None:
+        """Poses hips to clavicles and the head; the arguments [T] are what reaching asks on top."""
+        c, fig, bind = self.channels, self.figure, self.skeleton.bind
+        ankle, toes = self._ankles()
+        stride = np.clip(self.lead / (0.42 * self.height), -1.5, 1.5)
+        support = smooth(self.feet.air[1] - self.feet.air[0], 0.05 * self.fps) * (1 - self.sitting)
+        shift = self.sway + c["hips.shift"] + 0.018 * support * (1 - 0.5 * self.run)
+        pelvis_turn = -0.13 * stride * (1 - 0.3 * self.run) + c["hips.turn"] + 0.3 * self.twirl
+        lowered = 1.9 * self.sway / 0.05 * 0.04
+        roll = 0.06 * support - lowered * 0.0 + 1.1 * self.sway
+        moving = np.clip(self.pace / 1.2, 0, 1)
+        bow = c["body.bow"] + 0.10 * self.run + 0.02 * moving
+        transition = self._sit_lean()
+        pitch = 0.45 * lean + bow + 0.5 * transition - 0.05 * self.sitting
+        accelerate = np.clip(0.03 * self.push, -0.08, 0.12)
+        spine_lean = (
+            0.55 * lean + c["body.lean"] + 0.5 * transition + accelerate + 0.05 * self.run
+            + 0.012 * self.breath + 0.03 * self.sitting
+        )  # fmt: skip
+        spine_twist = (
+            1.9 * 0.13 * stride + c["body.twist"] + self.look.chest_twist + twist + 0.6 * self.twirl
+            - 0.8 * c["hips.turn"]
+        )  # fmt: skip
+        spine_side = c["body.side"] + 0.9 * roll
+        across = np.stack([-np.sin(self.yaw), np.cos(self.yaw)], axis=1)
+        ahead = np.stack([np.cos(self.yaw), np.sin(self.yaw)], axis=1)
+        back = 0.24 * np.sin(np.clip(pitch, 0, 1.2)) * (1 - self.sitting)
+        xy = self.root + shift[:, None] * across + (c["hips.forward"] + forward - 0.3 * back)[:, None] * ahead
+        z = self._pelvis_height(xy, ankle, drop + c["hips.drop"])
+        root = np.concatenate([xy, z[:, None]], axis=1)
+        up = c.pair("shoulder", "up") + 0.018 * self.breath + self._raise()
+        fig.torso(
+            root, self.yaw, (pelvis_turn, pitch, roll), (spine_twist, spine_lean, spine_side),
+            (up, c.pair("shoulder", "forward")),
+        )  # fmt: skip
+        upright = 0.75 * (pitch + spine_lean)
+        talk = self.speech
+        fig.head(
+            self.look.head_turn - 0.5 * (spine_twist - self.look.chest_twist - twist) + self.turning
+            + c["head.turn"] - 0.8 * pelvis_turn,
+            self.look.head_nod - np.clip(upright, -0.4, 0.55) + self.nodding + c["head.nod"] + talk.nod,
+            self.tilting + c["head.tilt"] + talk.tilt - 0.5 * spine_side,
+        )  # fmt: skip
+        self._set_legs(ankle, toes, bind)
+
+    def _raise(self) -> Array:
+        """Clavicles go up with a lifted arm [2, T]."""
+        c = self.channels
+        weight = c.pair("arm", "weight")
+        angle = np.hypot(c.pair("arm", "swing"), c.pair("arm", "out"))
+        return np.asarray(0.28 * weight * np.clip(angle - 0.7, 0.0, 1.6))
+
+    def _sit_lean(self) -> Array:
+        out = np.zeros(self.frames)
+        for sit in self.plan.route.sits:
+            d = sit.end - sit.start
+            lean = plateau(self.t, sit.start - 0.15, sit.start + 0.45 * d, sit.start + 0.5 * d, sit.end + 0.1)
+            out = out + 0.78 * lean
+        return out
+
+    def _ankles(self) -> tuple[Array, Array]:
+        c = self.channels
+        ankle, toes = ankle_positions(self.skeleton, self.feet, self.floor)
+        ahead, out, lift = (c.pair("foot", axis) for axis in ("forward", "out", "lift"))
+        cos, sin = np.cos(self.yaw), np.sin(self.yaw)
+        out = MIRROR * out
+        ankle[..., 0] += ahead * cos - out * sin
+        ankle[..., 1] += ahead * sin + out * cos
+        ankle[..., 2] += lift + self.sitting * self._dangle()
+        return ankle, toes
+
+    def _dangle(self) -> Array:
+        """How far the feet hang above the floor on a seat too high for them [T]."""
+        bind = self.skeleton.bind
+        hip = self.seat_height + sit_clearance(self.skeleton)
+        leg = bind[JOINT["thigh_l"]][2] - bind[JOINT["foot_l"]][2]
+        return np.asarray(np.maximum(hip - bind[JOINT["foot_l"]][2] - 0.88 * leg, 0.0))
+
+    def _pelvis_height(self, xy: Array, ankle: Array, drop: Array) -> Array:
+        """[T]: as high as the legs allow, never with a knee snapped straight."""
+        bind = self.skeleton.bind
+        hip_z = bind[JOINT["thigh_l"]][2]
+        leg = hip_z - bind[JOINT["foot_l"]][2]
+        above = bind[0][2] - hip_z
+        stand = self.floor + hip_z - 0.012 * self.height
+        cadence = self.feet.air.sum(axis=0)
+        moving = np.clip(np.abs(self.pace) / 1.0, 0, 1)
+        walk_bob = moving * (1 - self.run) * (0.016 * (cadence - 0.5) - 0.012)
+        run_bob = (
+            self.run * self.height * (0.028 * smooth(self.feet.air.min(axis=0) * 2.2, 0.04 * self.fps) - 0.04)
+        )
+        wished = stand + walk_bob + run_bob - drop
+        across = np.stack([-np.sin(self.yaw), np.cos(self.yaw)], axis=1)
+        half = bind[JOINT["thigh_l"]][1]
+        hips = np.stack([xy + half * across, xy - half * across])
+        flat = np.linalg.norm(ankle[..., :2] - hips, axis=-1)
+        reach = 0.992 * leg
+        limit = ankle[..., 2] + np.sqrt(np.maximum(reach**2 - flat**2, (0.3 * leg) ** 2))
+        lowest = limit.min(axis=0)
+        free = 1 - np.clip(3 * self.sitting, 0, 1)
+        wished = np.minimum(wished, np.where(free > 0, lowest, wished)) * free + wished * (1 - free)
+        standing = below(wished, max(1, round(0.07 * self.fps)))
+        seated = self.floor + self.seat_height + sit_clearance(self.skeleton)
+        s = self.sitting
+        return np.asarray(standing + s * (seated - standing) + above)
+
+    def _set_legs(self, ankle: Array, toes: Array, bind: Array) -> None:
+        yaw = np.unwrap(self.feet.place[..., 2], axis=1)
+        spread = 0.10 + 0.12 * self.sitting + self.channels["knees.spread"]
+        pitch = self.feet.pitch + self.channels.pair("foot", "pitch")
+        hips = self.figure.hip_joints()
+        leg = bind[JOINT["thigh_l"]][2] - bind[JOINT["foot_l"]][2]
+        pull = ankle - hips
+        far = np.linalg.norm(pull, axis=-1, keepdims=True)
+        ankle = hips + pull * np.minimum(1.0, 0.9995 * leg / np.maximum(far, 1e-6))
+        self.figure.legs(ankle, yaw, pitch, toes, np.broadcast_to(spread, yaw.shape))
+
+    # -- arms -----------------------------------------------------------------------------
+
+    def talk(self) -> None:
+        """Prepares speech; before :meth:`torso`."""
+        talks = [(k, w.start, w.duration) for w in self.plan.windows for k in w.timeline.talks]
+        self.speech = speech(talks, self.t, self.fps, self.rng)
+
+    def arm_pose(self, carry: Array) -> ArmPose:
+        """Both arms by angles: hanging, swinging with the gait, carrying (``carry`` [2, T]), then the keys."""
+        c = self.channels
+        stride = np.clip(self.lead / (0.42 * self.height), -1.6, 1.6)
+        opposite = np.stack([-stride, stride])
+        lag = delayed(opposite.T, 0.06 * self.fps).T
+        run = self.run
+        sit = self.sitting
+        swing = 0.02 + self.arm_noise + opposite * (0.36 + 0.15 * run) - 0.15 * run + 0.18 * sit
+        out = 0.17 + 0.05 * run + 0.5 * self.arm_noise[::-1] + 0.05 * sit + 0.02 * self.breath
+        bend = self.rest + 0.20 * np.maximum(lag, -0.4) * (1 - run) + run * (1.45 + 0.25 * lag) + 0.75 * sit
+        twist = 0.30 + 0.15 * run + 0.12 * sit + 0.0 * swing
+        hang = {
+            "swing": swing + c.pair("arm", "swing+"), "out": out, "bend": bend, "twist": twist,
+            "wrist": 0.12 + 0.1 * lag, "side": np.zeros_like(swing), "turn": np.full_like(swing, 0.35),
+        }  # fmt: skip
+        held = {
+            "swing": 0.18 + 0.25 * opposite * 0.36, "out": 0.16, "bend": 1.42, "twist": 0.18,
+            "wrist": 0.0, "side": 0.0, "turn": 0.0,
+        }  # fmt: skip
+        weight = c.pair("arm", "weight")
+        values = {}
+        for axis, value in hang.items():
+            base = value + carry * (held[axis] - value)
+            extra = c.pair("arm", axis + "+") if axis != "swing" else 0.0
+            values[axis] = base + weight * (c.pair("arm", axis) - base) + extra
+        values["bend"] = np.clip(values["bend"], 0.03, 2.5)
+        return ArmPose(**values)
+
+    def reach_body(self, tracks: HandTracks) -> None:
+        """Poses the torso so that hands can get where they are to go: leans, crouches, then twists."""
+        lean, twist, drop, forward = (np.zeros(self.frames) for _ in range(4))
+        self.torso(lean, twist, drop, forward)
+        if not tracks.reaching:
+            return
+        for _ in range(2):
+            gap = self._shortage(tracks)
+            if gap.max() < 1e-3:
+                return
+            shoulders = self.figure.shoulders()
+            d = tracks.position(self.figure) - shoulders
+            heading = np.stack([np.cos(self.yaw), np.sin(self.yaw)], axis=1)
+            flat = np.einsum("ktc,tc->kt", d[..., :2], heading)
+            length = np.maximum(np.linalg.norm(d, axis=-1), 1e-6)
+            ahead = (gap * np.clip(flat / length, 0.0, 1.0)).max(axis=0)
+            down = (gap * np.clip(-d[..., 2] / length, 0.0, 1.0)).max(axis=0)
+            standing = 1 - self.sitting
+            more = smooth(np.stack([ahead, down], axis=1), 0.10 * self.fps)
+            ahead, down = 1.15 * more[:, 0], 1.15 * more[:, 1]
+            room = np.maximum(0.30 * self.height - drop, 0.0)
+            lower = np.minimum(0.62 * down * standing, room)
+            torso = 0.30 * self.height
+            lean = np.minimum(lean + (ahead + 0.55 * (down - lower)) / torso + 0.45 * lower, 1.15)
+            drop = drop + lower
+            side = (gap[0] - gap[1]) * -0.5
+            twist = np.clip(twist + smooth(side, 0.1 * self.fps), -0.45, 0.45)
+            self.torso(lean, twist, drop, forward)
+
+    def _shortage(self, tracks: HandTracks) -> Array:
+        """[2, T]: how far each hand's place is out of the arm's reach, by the reach's weight."""
+        d = np.linalg.norm(tracks.position(self.figure) - self.figure.shoulders(), axis=-1)
+        reach = 0.95 * (self.figure.arm_length + 0.045 * self.height)
+        return np.asarray(np.maximum(d - reach, 0.0) * tracks.weight)
+
+    def arms(self, contacts: Contacts) -> Array:
+        """Poses arms and hands; returns the palms [2, T, 3]."""
+        tracks = contacts.tracks
+        pose = self.arm_pose(tracks.carry)
+        rotation = palm_rotation(self.yaw, tracks.inward, tracks.pitch, tracks.tilt, self.skeleton)
+        goals = HandGoals(tracks.position(self.figure), tracks.weight, rotation, tracks.turning)
+        palms = self.figure.arms(pose, goals, self.yaw)
+        self.goal_rotation = rotation
+        c = self.channels
+        weight = c.pair("fingers", "weight")
+        relaxed = 0.30 + 0.04 * self.arm_noise / 0.02 * 0.3 + 0.35 * self.run
+        curl = relaxed + tracks.grip * (0.62 - relaxed)
+        curl = curl + weight * (c.pair("fingers", "curl") - curl) + c.pair("fingers", "curl+")
+        point = weight * c.pair("fingers", "point")
+        self.figure.fingers(np.clip(curl, 0.0, 1.0), np.clip(point, 0, 1), np.clip(0.35 + 0.6 * curl, 0, 1))
+        return palms
+
+    def face(self) -> None:
+        """Eyes, lids, brows, mouth and jaw."""
+        c, talk = self.channels, self.speech
+        up = c.pair("brow", "up") + 0.5 * talk.brow
+        knit = c.pair("brow", "knit").max(axis=0)
+        lids = np.clip(np.maximum(blinks(self.t, self.rng), c["lids.close"]), 0, 1)
+        self.figure.face(
+            (self.look.eye_turn + c["eyes.turn"], self.look.eye_down + c["eyes.down"]),
+            lids, (up, knit), c["mouth.smile"], np.clip(talk.jaw + c["jaw.open"], 0, 1),
+        )  # fmt: skip
+
+
+def relative_gaze(eye: Array, yaw: Array, point: Array) -> tuple[Array, Array]:
+    """Turn to the left and down [T] from ``eye`` [T, 3] to ``point`` [T, 3] or [3], seen from heading ``yaw``."""
+    d = point - eye
+    turn = wrap(np.arctan2(d[..., 1], d[..., 0]) - yaw)
+    return np.unwrap(turn), np.arctan2(-d[..., 2], np.hypot(d[..., 0], d[..., 1]))
+
+
+def fade(t: Array, start: float, end: float, lead: float = 0.35) -> Array:
+    """A gaze's weight: quickly there, quickly gone."""
+    return ramp(t, start, start + lead) * (1.0 - ramp(t, end - 0.5 * lead, end + 0.5 * lead))

@@ -1,0 +1,186 @@
+"""Where hands have to be: reaches of a plan's windows turned into palm tracks, layer over layer."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from runtime.body.skeleton import JOINT, Skeleton
+
+from .curves import plateau, ramp
+from .figure import Figure
+from .rotations import rot_x, rot_z, wrap
+from .types import PropState, Reach
+
+Array = NDArray[np.float64]
+SIDE = {"l": 0, "r": 1}
+#: Places on one's own body: joint, and how the palm lies there: fingers inward, fingers up, thumb over.
+_LIE: dict[str, tuple[float, float, float]] = {
+    "mouth": (1.25, 0.35, 0.0), "ear": (0.25, 1.05, -0.2), "chin": (0.75, 0.95, 0.2), "chest": (1.2, 0.15, 0.0),
+    "hip": (1.0, -0.45, 0.5), "head": (0.8, 1.1, 0.9), "heart": (1.3, 0.2, 0.0), "belly": (1.3, 0.0, 0.0),
+    "eyes": (1.1, 0.8, 0.0), "elbow": (1.4, 0.1, 0.2), "lap": (0.35, -0.15, 1.35), "front": (0.25, 0.0, 0.0),
+}  # fmt: skip
+_PALM = {"side": 0.0, "down": 1.45, "up": -1.3}
+
+
+def body_place(figure: Figure, place: str, hand: int, yaw: Array) -> Array:
+    """[T, 3]: a place on the person's own body for a palm of that hand (0 left, 1 right)."""
+    bind, h = figure.skeleton.bind, figure.skeleton.height
+    m = 1.0 - 2.0 * hand
+    eye = bind[JOINT["eye_l"]] - bind[JOINT["head"]]
+    mouth_z = bind[JOINT["mouth_l"]][2] - bind[JOINT["head"]][2]
+    on_head = {
+        "mouth": (1.42 * eye[0], 0.0, mouth_z),
+        "ear": (0.15 * eye[0], m * 2.75 * eye[1], 0.75 * eye[2]),
+        "chin": (1.25 * eye[0], m * 0.3 * eye[1], mouth_z - 0.85 * eye[2]),
+        "head": (0.2 * eye[0], m * 1.9 * eye[1], 2.3 * eye[2]),
+        "eyes": (1.75 * eye[0], m * 0.8 * eye[1], eye[2]),
+    }
+    if place in on_head:
+        return figure.point("head", np.array(on_head[place]))
+    shoulder = bind[JOINT["upperarm_l"]] - bind[JOINT["chest"]]
+    on_chest = {
+        "chest": (0.105 * h, m * 0.35 * shoulder[1], 0.35 * shoulder[2]),
+        "heart": (0.105 * h, 0.25 * shoulder[1], 0.45 * shoulder[2]),
+        "front": (0.24 * h, m * 0.75 * shoulder[1], -0.06 * h),
+        "elbow": (0.12 * h, -m * 0.75 * shoulder[1], -0.08 * h),
+        "belly": (0.115 * h, m * 0.15 * shoulder[1], -0.10 * h),
+    }
+    if place in on_chest:
+        return figure.point("chest", np.array(on_chest[place]))
+    if place == "lap":
+        side = "lr"[hand]
+        hip, knee = (figure.position[:, JOINT[f"{j}_{side}"]] for j in ("thigh", "shin"))
+        out: Array = hip + 0.62 * (knee - hip)
+        out[:, 2] += 0.062 * h
+        return out
+    hip_y = bind[JOINT["thigh_l"]][1]
+    return figure.point("hips", np.array([0.035 * h, m * (hip_y + 0.055 * h), 0.035 * h]))
+
+
+@dataclass(frozen=True, eq=False)
+class Layer:
+    """A hand's wish: weight [T]; the place is a point [T, 3] or a body place; angles as in palm_rotation."""
+
+    hand: int
+    weight: Array
+    place: Array | str
+    offset: Array
+    angles: tuple[float, float, float]
+    rim: float = 0.0
+
+
+class HandTracks:
+    """All layers of one person, composed. Arrays are [2, T], left first.
+
+    weight: how far the palm is drawn to its place; turning: how far its orientation is
+    inward, pitch, tilt: that orientation; carry: a thing is in the hand; grip: fingers closed
+    """
+
+    def __init__(
+        self, yaw: Array, carry: Array, tilt: Array, layers: list[Layer], skeleton: Skeleton
+    ) -> None:
+        shape = carry.shape
+        self.yaw, self.carry, self.layers, self.skeleton = yaw, carry, layers, skeleton
+        self.weight = np.zeros(shape)
+        self.turning = carry.copy()
+        self.inward = np.full(shape, 0.55)
+        self.pitch = np.zeros(shape)
+        roll = np.zeros(shape)
+        self.grip = carry
+        for layer in layers:
+            k, w = layer.hand, layer.weight
+            self.weight[k] = w + self.weight[k] * (1 - w)
+            total = w + self.turning[k] * (1 - w)
+            share = w / np.maximum(total, 1e-6)
+            for track, angle in zip((self.inward, self.pitch, roll), layer.angles, strict=True):
+                track[k] += share * (angle - track[k])
+            self.turning[k] = total
+        self.pitch *= 1 - carry
+        self.tilt = roll * (1 - carry) + tilt
+        self.reaching = any(not isinstance(x.place, str) for x in layers)
+
+    def position(self, figure: Figure) -> Array:
+        """Palms' places [2, T, 3] for the torso as it is posed now."""
+        out = figure.shoulders()
+        total = np.zeros(self.weight.shape)
+        cos, sin = np.cos(self.yaw), np.sin(self.yaw)
+        for layer in self.layers:
+            k, w = layer.hand, layer.weight
+            at = body_place(figure, layer.place, k, self.yaw) if isinstance(layer.place, str) else layer.place
+            ahead, outward, up = layer.offset
+            left = outward * (1.0 - 2.0 * k)
+            at = at + np.stack(
+                [ahead * cos - left * sin, ahead * sin + left * cos, np.full_like(cos, up)], axis=1
+            )
+            if layer.rim:
+                at = at - self._up(k)[..., 2] * layer.rim
+            over = w + total[k] * (1 - w)
+            share = w / np.maximum(over, 1e-6)
+            out[k] += share[:, None] * (at - out[k])
+            total[k] = over
+        return out
+
+    def hand_yaw(self, k: int) -> Array:
+        """Heading of a hand's fingers [T]."""
+        return self.yaw - (1.0 - 2.0 * k) * self.inward[k]
+
+    def _up(self, k: int) -> Array:
+        """[T, 3, 3]: how a held thing stands."""
+        return rot_z(self.hand_yaw(k)) @ rot_x((1.0 - 2.0 * k) * self.tilt[k])
+
+    def held_rotation(self, k: int, since: int, rotation: Array) -> Array:
+        """[T, 3, 3]: a thing's rotation if the hand does as it should; it was ``rotation`` at frame ``since``."""
+        return self._up(k) @ rot_z(-self.hand_yaw(k)[since]) @ rotation
+
+
+@dataclass(frozen=True, eq=False)
+class Contacts:
+    """What :meth:`Performer.arms` needs of contacts."""
+
+    tracks: HandTracks
+
+
+def reach_layer(
+    reach: Reach,
+    hand: int,
+    window: tuple[float, float],
+    t: Array,
+    place: Array | str,
+    start: tuple[Array, float, Skeleton],
+    rim: float,
+    extra: Array,
+) -> Layer:
+    """A reach as a layer. window: start and duration in seconds; start: (root xy, heading, skeleton) on arrival."""
+    begin, duration = window
+    times = [begin + x * duration for x in (reach.start, reach.arrive, reach.leave, reach.end)]
+    weight = plateau(t, *times)
+    tilt = _PALM.get(reach.palm, 0.0)
+    if isinstance(place, str):
+        inward, pitch, over = _LIE[place]
+        angles = (inward, pitch, over + tilt)
+    else:
+        xy, heading, skeleton = start
+        m = 1.0 - 2.0 * hand
+        shoulder = skeleton.bind[JOINT["upperarm_l"]]
+        at = place[len(place) // 2]
+        side = xy + m * shoulder[1] * np.array([-np.sin(heading), np.cos(heading)])
+        bearing = float(wrap(np.arctan2(at[1] - side[1], at[0] - side[0]) - heading))
+        low = np.clip((0.62 * shoulder[2] - at[2]) / 0.6, 0.0, 1.0)
+        angles = (float(np.clip(-m * bearing, -0.5, 1.1)), -0.9 * float(low), tilt)
+    return Layer(hand, weight, place, np.array(reach.offset) + extra, angles, rim)
+
+
+def holding_weight(t: Array, spans: list[tuple[float, float]]) -> Array:
+    """[T]: 1 while something is in the hand; spans are (taken, let go) in seconds."""
+    out = np.zeros(len(t))
+    for taken, gone in spans:
+        out = np.maximum(out, ramp(t, taken - 0.12, taken + 0.4) * (1.0 - ramp(t, gone - 0.06, gone + 0.4)))
+    return out
+
+
+def top_above_grip(prop: PropState) -> float:
+    """About how far a thing reaches above where it is held: as far as below."""
+    return float(np.clip(prop.grip[2], 0.03, 0.2))

@@ -1,0 +1,331 @@
+"""A person's pose over all frames: torso by angles, limbs by inverse kinematics, face by small turns.
+
+Called in the order of the class: :meth:`Figure.torso`, :meth:`Figure.head`, :meth:`Figure.legs`,
+:meth:`Figure.arms`, :meth:`Figure.hands`, :meth:`Figure.face`. Left and right are axis 0 of limb arrays.
+Angles are radians, positions metres in the world.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from runtime.body.skeleton import JOINT, JOINTS, PARENTS, Skeleton
+
+from .ik import bone_rotation, two_bone
+from .rotations import across, blend, quaternion, rot_x, rot_y, rot_z, rotation, rotation_vector, unit
+
+Array = NDArray[np.float64]
+SIDES = ("l", "r")
+#: +1 left, -1 right, to be multiplied with [2, T] arrays.
+MIRROR = np.array([1.0, -1.0])[:, None]
+
+
+@dataclass(frozen=True, eq=False)
+class ArmPose:
+    """Both arms by angles, each [2, T]; see :mod:`runtime.motion.channels`."""
+
+    swing: Array
+    out: Array
+    twist: Array
+    bend: Array
+    wrist: Array
+    side: Array
+    turn: Array
+
+
+@dataclass(frozen=True, eq=False)
+class HandGoals:
+    """Where palms are to be: position [2, T, 3] and weight [2, T]; rotation [2, T, 3, 3] and its weight."""
+
+    position: Array
+    weight: Array
+    rotation: Array
+    turning: Array
+
+
+def palm_rotation(heading: Array, inward: Array, pitch: Array, tilt: Array, skeleton: Skeleton) -> Array:
+    """World rotation of both hands [2, T, 3, 3] with thumbs up, palms facing each other.
+
+    heading [T]; inward [2, T]: how far the fingers turn towards the middle; pitch [2, T]: fingers up;
+    tilt [2, T]: the thumb's side tips towards the palm
+    """
+    yaw = heading[None] - MIRROR * inward
+    basis = np.stack([_canonical(skeleton, s) for s in SIDES])
+    return rot_z(yaw) @ rot_y(-pitch) @ rot_x(MIRROR * tilt) @ basis[:, None]
+
+
+def _hand_axes(skeleton: Skeleton, side: str) -> tuple[Array, Array, Array]:
+    """In the bind pose: along the fingers, out of the palm, to the thumb."""
+    fingers = unit(skeleton.bind[JOINT[f"fingers_{side}"]] - skeleton.bind[JOINT[f"hand_{side}"]])
+    thumb = across(np.array([1.0, 0.0, 0.0]), fingers)
+    palm = np.cross(thumb, fingers) if side == "r" else np.cross(fingers, thumb)
+    return fingers, palm, thumb
+
+
+def _canonical(skeleton: Skeleton, side: str) -> Array:
+    fingers, palm, thumb = _hand_axes(skeleton, side)
+    medial = np.array([0.0, -1.0 if side == "l" else 1.0, 0.0])
+    world = np.stack([np.array([1.0, 0, 0]), medial, np.array([0, 0, 1.0])], axis=1)
+    return world @ np.stack([fingers, palm, thumb])
+
+
+def palm_offset(skeleton: Skeleton) -> Array:
+    """[2, 3]: from the wrist to the middle of the grip, in each hand's bind frame."""
+    out = np.zeros((2, 3))
+    for k, s in enumerate(SIDES):
+        fingers, palm, thumb = _hand_axes(skeleton, s)
+        length = np.linalg.norm(skeleton.bind[JOINT[f"fingers_{s}"]] - skeleton.bind[JOINT[f"hand_{s}"]])
+        out[k] = fingers * length * 0.92 + palm * skeleton.height * 0.021 + thumb * 0.004
+    return out
+
+
+class Figure:
+    """One person's joints over T frames."""
+
+    def __init__(self, skeleton: Skeleton, frames: int) -> None:
+        self.skeleton = skeleton
+        self.frames = frames
+        self.offsets = skeleton.offsets
+        self.rotation = np.zeros((frames, len(JOINTS), 3, 3))
+        self.position = np.zeros((frames, len(JOINTS), 3))
+        bind = skeleton.bind
+        self._upper = float(np.linalg.norm(bind[JOINT["forearm_l"]] - bind[JOINT["upperarm_l"]]))
+        self._lower = float(np.linalg.norm(bind[JOINT["hand_l"]] - bind[JOINT["forearm_l"]]))
+        self.arm_length = self._upper + self._lower
+
+    def turn(self, joint: str, local: Array) -> None:
+        """Sets a joint by its local rotation [T, 3, 3]; its parent has to be set."""
+        j = JOINT[joint]
+        base = self.rotation[:, PARENTS[j]]
+        self.rotation[:, j] = base @ local
+        self.position[:, j] = self.position[:, PARENTS[j]] + base @ self.offsets[j]
+
+    def _place(self, joint: str) -> Array:
+        """Where a joint is by its parent [T, 3], before it is turned itself."""
+        j = JOINT[joint]
+        out: Array = self.position[:, PARENTS[j]] + self.rotation[:, PARENTS[j]] @ self.offsets[j]
+        return out
+
+    # -- torso and head ------------------------------------------------------------------
+
+    def torso(
+        self,
+        root: Array,
+        yaw: Array,
+        pelvis: tuple[Array, Array, Array],
+        bend: tuple[Array, Array, Array],
+        shoulders: tuple[Array, Array],
+    ) -> None:
+        """Hips at ``root`` [T, 3]; pelvis: turn, pitch, roll [T]; bend: twist, lean, side of the whole spine
+        [T]; shoulders: up and forward [2, T] of each clavicle."""
+        turn, pitch, roll = pelvis
+        self.rotation[:, 0] = rot_z(yaw + turn) @ rot_y(pitch) @ rot_x(roll)
+        self.position[:, 0] = root
+        twist, lean, side = bend
+        self.turn("spine", rot_z(0.4 * twist) @ rot_y(0.5 * lean) @ rot_x(-0.5 * side))
+        self.turn("chest", rot_z(0.6 * twist) @ rot_y(0.5 * lean) @ rot_x(-0.5 * side))
+        up, forward = shoulders
+        for k, s in enumerate(SIDES):
+            m = 1.0 if s == "l" else -1.0
+            self.turn(f"clavicle_{s}", rot_z(-m * forward[k]) @ rot_x(m * up[k]))
+
+    def head(self, turn: Array, nod: Array, tilt: Array) -> None:
+        """Neck and head share the angles [T]; tilt to the left is positive."""
+        for joint, share in (("neck", 0.4), ("head", 0.6)):
+            self.turn(joint, rot_z(share * turn) @ rot_y(share * nod) @ rot_x(-share * tilt))
+
+    # -- limbs -----------------------------------------------------------------------------
+
+    def hip_joints(self) -> Array:
+        """[2, T, 3]"""
+        return np.stack([self._place(f"thigh_{s}") for s in SIDES])
+
+    def legs(self, ankle: Array, yaw: Array, pitch: Array, toes: Array, spread: Array) -> None:
+        """Ankles at ``ankle`` [2, T, 3]; feet turned by yaw and pitch (heel up) [2, T]; toes flex up [2, T];
+        knees bulge along the feet, ``spread`` [2, T] more to the outside."""
+        bind = self.skeleton.bind
+        root = self.hip_joints()
+        thigh = float(np.linalg.norm(bind[JOINT["shin_l"]] - bind[JOINT["thigh_l"]]))
+        shin = float(np.linalg.norm(bind[JOINT["foot_l"]] - bind[JOINT["shin_l"]]))
+        knee_yaw = yaw + MIRROR * spread
+        pole = np.stack([np.cos(knee_yaw), np.sin(knee_yaw), np.zeros_like(yaw)], axis=-1)
+        pole[..., 2] += 0.25
+        limb = two_bone(root, ankle, thigh, shin, pole, soft=False)
+        foot = rot_z(yaw) @ rot_y(pitch)
+        back = np.array([-1.0, 0.0, 0.0])
+        for k, s in enumerate(SIDES):
+            t, n, f = (JOINT[f"{name}_{s}"] for name in ("thigh", "shin", "foot"))
+            self.position[:, t], self.position[:, n], self.position[:, f] = (
+                root[k],
+                limb.middle[k],
+                limb.end[k],
+            )
+            self.rotation[:, t] = bone_rotation(
+                limb.middle[k] - root[k], limb.hinge[k], bind[n] - bind[t], back
+            )
+            self.rotation[:, n] = bone_rotation(
+                limb.end[k] - limb.middle[k], limb.hinge[k], bind[f] - bind[n], back
+            )
+            self.rotation[:, f] = foot[k]
+            self.turn(f"toe_{s}", rot_y(-toes[k]))
+
+    def shoulders(self) -> Array:
+        """[2, T, 3]"""
+        return np.stack([self._place(f"upperarm_{s}") for s in SIDES])
+
+    def arms(self, pose: ArmPose, goals: HandGoals, yaw: Array) -> Array:
+        """Both arms by their angles, drawn to the goals by inverse kinematics; sets hands too.
+
+        Returns the positions of the palms [2, T, 3].
+        """
+        root = self.shoulders()
+        chest = self.rotation[:, JOINT["chest"]]
+        down, forward = _arm_directions(pose)
+        down, forward = (np.einsum("tab,ktb->kta", chest, v) for v in (down, forward))
+        lower = np.cos(pose.bend)[..., None] * down + np.sin(pose.bend)[..., None] * forward
+        wrist_fk = root + down * self._upper + lower * self._lower
+        pole_fk = -forward
+        heading = rot_z(yaw)
+        natural = np.stack([heading @ np.array([-0.45, m * 0.55, -0.75]) for m in (1.0, -1.0)])
+        w = goals.weight[..., None]
+        pole = unit((1 - w) * pole_fk + w * natural)
+        fk_relative = self._wrist_angles(pose)
+        offset = palm_offset(self.skeleton)
+        goal_wrist = goals.position - np.einsum("ktab,kb->kta", goals.rotation, offset)
+        for _ in range(3):
+            target = wrist_fk + w * (goal_wrist - wrist_fk)
+            limb = two_bone(root, target, self._upper, self._lower, pole)
+            upper, fore, hand = self._arm_rotations(
+                root, limb.middle, limb.end, limb.hinge, fk_relative, goals
+            )
+            goal_wrist = goals.position - np.einsum("ktab,kb->kta", hand, offset)
+        for k, s in enumerate(SIDES):
+            a, f, h = (JOINT[f"{name}_{s}"] for name in ("upperarm", "forearm", "hand"))
+            self.position[:, a], self.position[:, f], self.position[:, h] = (
+                root[k],
+                limb.middle[k],
+                limb.end[k],
+            )
+            self.rotation[:, a], self.rotation[:, f], self.rotation[:, h] = upper[k], fore[k], hand[k]
+        palm: Array = limb.end + np.einsum("ktab,kb->kta", hand, offset)
+        return palm
+
+    def _wrist_angles(self, pose: ArmPose) -> Array:
+        """Rotation of each hand against its forearm [2, T, 3, 3] in the bind frame."""
+        out = []
+        for k, s in enumerate(SIDES):
+            fingers, palm, thumb = _hand_axes(self.skeleton, s)
+            m = 1.0 if s == "l" else -1.0
+            turn = rotation(fingers * (m * pose.turn[k])[:, None])
+            side = rotation(np.cross(fingers, thumb) * pose.side[k][:, None])
+            bend = rotation(np.cross(fingers, palm) * pose.wrist[k][:, None])
+            out.append(turn @ side @ bend)
+        return np.stack(out)
+
+    def _arm_rotations(
+        self, root: Array, elbow: Array, wrist: Array, hinge: Array, fk: Array, goals: HandGoals
+    ) -> tuple[Array, Array, Array]:
+        """World rotations of upper arms, forearms and hands, each [2, T, 3, 3]; wrists within their limits."""
+        bind = self.skeleton.bind
+        upper, fore, axes = [], [], []
+        front = np.array([1.0, 0.0, 0.0])
+        for k, s in enumerate(SIDES):
+            a, f, h = (JOINT[f"{name}_{s}"] for name in ("upperarm", "forearm", "hand"))
+            upper.append(bone_rotation(elbow[k] - root[k], hinge[k], bind[f] - bind[a], front))
+            fore.append(bone_rotation(wrist[k] - elbow[k], hinge[k], bind[h] - bind[f], front))
+            axes.append(unit(bind[h] - bind[f]))
+        base, axis = np.stack(fore), np.stack(axes)[:, None]
+        goal = np.swapaxes(base, -1, -2) @ goals.rotation
+        relative = _within_limits(blend(fk, goal, goals.turning), axis)
+        swivel = np.sum(rotation_vector_twist(relative, axis) * axis, axis=-1)
+        return np.stack(upper), base @ rotation(axis * (0.45 * swivel)[..., None]), base @ relative
+
+    def fingers(self, curl: Array, point: Array, thumb: Array) -> None:
+        """Fingers [2, T]: curl 0 straight .. 1 fist; point: the index stays straight; thumb curls 0..1."""
+        for k, s in enumerate(SIDES):
+            m = -1.0 if s == "l" else 1.0
+            first, second = 1.35 * curl[k], 1.7 * curl[k]
+            self.turn(f"fingers_{s}", rot_x(m * first))
+            self.turn(f"fingertips_{s}", rot_x(m * second))
+            self.turn(f"index_{s}", rot_x(-m * first * point[k]))
+            self.turn(f"indextip_{s}", rot_x(m * second * (1 - point[k])))
+            self.turn(f"thumb_{s}", rot_x(m * 0.55 * thumb[k]) @ rot_z(m * 0.35 * thumb[k]))
+
+    # -- face ------------------------------------------------------------------------------
+
+    def face(
+        self, eyes: tuple[Array, Array], lids: Array, brows: tuple[Array, Array], mouth: Array, jaw: Array
+    ) -> None:
+        """eyes: turn, down [T]; lids [T]: 0 open .. 1 shut; brows: up [2, T] and knit [T]; mouth [T]: smile
+        -1..1; jaw [T]: open 0..1."""
+        turn, down = eyes
+        self.turn("jaw", rot_y(0.30 * jaw))
+        for k, s in enumerate(SIDES):
+            m = 1.0 if s == "l" else -1.0
+            self.turn(f"eye_{s}", rot_z(turn) @ rot_y(down))
+            self.turn(f"lid_{s}", rot_y(0.95 * lids + 0.35 * np.clip(down, -0.4, 0.5)))
+            self.turn(f"brow_{s}", rot_z(-m * 0.05 * brows[1]) @ rot_y(-0.16 * brows[0][k] + 0.05 * brows[1]))
+            self.turn(f"mouth_{s}", rot_z(m * 0.10 * mouth) @ rot_y(-0.16 * mouth))
+
+    # -- places ----------------------------------------------------------------------------
+
+    def point(self, joint: str, offset: Array) -> Array:
+        """[T, 3] of a point fixed to a joint, ``offset`` [3] in the bind frame."""
+        j = JOINT[joint]
+        out: Array = self.position[:, j] + self.rotation[:, j] @ offset
+        return out
+
+    def matrices(self) -> NDArray[np.float32]:
+        """float32 [T, J, 4, 4] world_from_joint."""
+        out = np.zeros((self.frames, len(JOINTS), 4, 4), np.float32)
+        out[..., :3, :3] = self.rotation
+        out[..., :3, 3] = self.position
+        out[..., 3, 3] = 1.0
+        return out
+
+
+def _arm_directions(pose: ArmPose) -> tuple[Array, Array]:
+    """In the chest's frame: where the upper arm points, and where a bent forearm would, each [2, T, 3].
+
+    The upper arm swings from hanging about the axis square to (swing, out), then twists about itself.
+    """
+    angle = np.hypot(pose.swing, pose.out)
+    safe = np.maximum(angle, 1e-9)
+    cf = np.where(angle < 1e-6, 1.0, pose.swing / safe)
+    co = np.where(angle < 1e-6, 0.0, pose.out / safe)
+    s, c = np.sin(angle), np.cos(angle)
+    down = np.stack([s * cf, s * co, -c], axis=-1)
+    forward = np.stack([cf * c * cf + co * co, cf * c * co - co * cf, cf * s], axis=-1)
+    twist = pose.twist[..., None]
+    forward = np.cos(twist) * forward + np.sin(twist) * np.cross(down, forward)
+    flip = np.ones((2, 1, 3))
+    flip[1, 0, 1] = -1.0
+    return down * flip, forward * flip
+
+
+def rotation_vector_twist(matrix: Array, axis: Array) -> Array:
+    """The part of each rotation about the unit ``axis``, as a rotation vector."""
+    q = quaternion(matrix)
+    along = np.sum(q[..., 1:] * axis, axis=-1)
+    out: Array = axis * (2.0 * np.arctan2(along, q[..., 0]))[..., None]
+    return out
+
+
+def _within_limits(relative: Array, axis: Array) -> Array:
+    """Wrist rotations eased into what a wrist can do: 1.75 rad of turn, 1.15 rad of bend."""
+    twist = rotation_vector_twist(relative, axis)
+    turned = rotation(twist)
+    swing = rotation_vector(relative @ np.swapaxes(turned, -1, -2))
+    return rotation(_soft_limit(swing, 1.15)) @ rotation(_soft_limit(twist, 1.75))
+
+
+def _soft_limit(vector: Array, limit: float) -> Array:
+    length = np.linalg.norm(vector, axis=-1, keepdims=True)
+    knee = 0.75 * limit
+    over = np.maximum(length - knee, 0.0)
+    room = limit - knee
+    eased = np.where(length > knee, knee + room * np.tanh(over / room), length)
+    return vector * (eased / np.maximum(length, 1e-9))

@@ -1,0 +1,69 @@
+"""Two-bone inverse kinematics with pole hints, and bone frames. All inputs may carry leading axes.
+
+A limb is a root, a middle joint (elbow, knee) and an end (wrist, ankle). Its ``hinge`` is the unit
+axis about which the middle joint flexes; ``pole`` points to where the middle joint should bulge.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .rotations import across, unit
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Limb:
+    """Solved limb: positions [..., 3] of middle and end, and the hinge axis [..., 3]."""
+
+    middle: Array
+    end: Array
+    hinge: Array
+
+
+def soft_length(distance: Array, full: Array | float, start: float = 0.965, stop: float = 0.998) -> Array:
+    """Distance a limb of length ``full`` really spans for a wished one: exact up to ``start`` of it,
+    then creeping towards ``stop`` without ever snapping straight."""
+    x = distance / full
+    span = stop - start
+    soft = start + span * (1.0 - np.exp(-np.maximum(x - start, 0.0) / span))
+    out: Array = np.where(x > start, soft, x) * full
+    return out
+
+
+def two_bone(
+    root: Array, target: Array, upper: Array | float, lower: Array | float, pole: Array, soft: bool = True
+) -> Limb:
+    """Reaches from ``root`` [..., 3] for ``target`` [..., 3] with bones of lengths ``upper``, ``lower``.
+
+    A target too far is approached in its direction. The middle joint never passes straight.
+    """
+    offset = target - root
+    wished = np.linalg.norm(offset, axis=-1)
+    axis = offset / np.maximum(wished, 1e-9)[..., None]
+    full = np.asarray(upper + lower)
+    reach = soft_length(wished, full) if soft else np.minimum(wished, full * 0.9999)
+    reach = np.maximum(reach, np.abs(np.asarray(upper - lower)) + 0.12 * full)
+    cosine = np.clip((upper**2 + reach**2 - lower**2) / (2 * upper * reach), -1.0, 1.0)
+    sine = np.sqrt(1.0 - cosine**2)
+    side = across(pole, axis)
+    middle = root + axis * (upper * cosine)[..., None] + side * (upper * sine)[..., None]
+    return Limb(middle, root + axis * reach[..., None], np.cross(side, axis))
+
+
+def bone_rotation(direction: Array, hinge: Array, bind: Array, bind_side: Array) -> Array:
+    """World rotation of a bone that points along ``direction`` with its flexion axis on ``hinge``.
+
+    bind [3], bind_side [3]: in the bind pose the bone's direction, and where it swings to on flexing
+    """
+    d = unit(direction)
+    e = unit(np.cross(hinge, d))
+    world = np.stack([d, e, np.cross(d, e)], axis=-1)
+    b = unit(bind)
+    s = across(bind_side, b)
+    local = np.stack([b, s, np.cross(b, s)], axis=-1)
+    return world @ np.swapaxes(local, -1, -2)

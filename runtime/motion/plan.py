@@ -1,0 +1,281 @@
+"""From a task to a plan: what comes after what, where, with which hand. No poses yet.
+
+A plan has a :class:`~runtime.motion.gait.Route`, windows in which timelines play, and the moments at
+which things change hands. Everything is decided here from positions and times alone.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from runtime.body.skeleton import JOINT
+
+from .gait import MANNERS, WALK, Route
+from .rotations import wrap
+from .types import Actor, Gaze, Grasp, Point, PropState, Reach, TargetPoint, Task, Timeline
+
+Array = NDArray[np.float64]
+
+#: Taking hold of a thing that an action needs and that is not in a hand yet.
+PICK = Timeline(
+    reaches=(Reach("near", "target", 0.12, 0.55, 0.68, 1.0),),
+    grasps=(Grasp("take", "near", 0.6),),
+    gazes=(Gaze("target", 0.0, 0.75),),
+)
+PICK_TIME = 1.25
+STAND_TIME = 1.25
+SIT_TIME = 1.3
+
+
+@dataclass(frozen=True, eq=False)
+class Window:
+    """A timeline played from ``start`` for ``duration`` seconds by one person.
+
+    hands: hand words to ``l`` / ``r``; partner: the other person's name
+    """
+
+    timeline: Timeline
+    start: float
+    duration: float
+    hands: dict[str, str]
+    target: TargetPoint | None
+    second: TargetPoint | None
+    partner: str | None
+
+    def at(self, share: float) -> float:
+        return self.start + share * self.duration
+
+
+@dataclass(frozen=True)
+class Event:
+    """At ``time`` a hand takes, puts down (at ``place``) or passes on (to ``receiver``) a thing."""
+
+    time: float
+    kind: str
+    person: str
+    hand: str
+    object: int
+    place: Point | None = None
+    receiver: str | None = None
+
+
+@dataclass(eq=False)
+class Plan:
+    """One person's shot. ``busy`` until ``end`` seconds; ``held`` is what each hand holds as planned so far."""
+
+    name: str
+    actor: Actor
+    route: Route
+    held: dict[str, int]
+    windows: list[Window] = field(default_factory=list)
+    events: list[Event] = field(default_factory=list)
+    end: float = 0.0
+    acts: bool = False
+
+
+def begin(name: str, actor: Actor) -> Plan:
+    """A plan in which nothing happens yet."""
+    state = actor.state
+    person = np.random.default_rng([*name.encode(), 77])
+    seat = state.seat if state.posture == "sitting" else None
+    if state.posture == "sitting" and seat is None:
+        seat = (*state.position[:2], state.position[2] + 0.45)
+    route = Route(actor.skeleton, state.position, state.heading, seat, person)
+    return Plan(name, actor, route, dict(state.held))
+
+
+def plan_task(
+    plan: Plan, task: Task, props: dict[int, PropState], rng: np.random.Generator, delay: float
+) -> None:
+    """Adds a task: getting there, taking what is needed, then the clip."""
+    clip, route = task.clip, plan.route
+    variant = clip.variant(task.variant)
+    plan.acts = True
+    route.wait(delay)
+    clip_start = route.now
+    _go(plan, task, variant.stride, rng)
+    _sit_or_stand(plan, task, rng)
+    _take_needed(plan, task, props)
+    duration = variant.duration / task.speed
+    if task.duration is not None:
+        left = task.duration - route.now
+        duration = float(np.clip(left, 0.7 * duration, 1.5 * duration)) if duration > 0 else 0.0
+    start = clip_start if clip.lead else route.now
+    if clip.lead:
+        duration = max(duration, route.now - clip_start)
+    if duration > 0:
+        _play(plan, variant.timeline, start, duration, task)
+        route.now = max(route.now, start + duration)
+    plan.end = route.now
+
+
+def _go(plan: Plan, task: Task, stride: tuple[float, float], rng: np.random.Generator) -> None:
+    clip, route = task.clip, plan.route
+    path = task.path if clip.travel != "none" else None
+    if path is not None and len(path) and _path_length(path) < 0.05:
+        path = None
+    heading = task.arrive_heading
+    if path is not None:
+        if route.seat is not None:
+            route.stand(STAND_TIME / task.speed)
+        end = np.asarray(path, dtype=np.float64)[-1, :2]
+        if heading is None and clip.seat != "down":
+            heading = _facing(task, end)
+        if clip.seat == "down" and task.target is not None and task.target.seat is not None:
+            return  # the way leads on to the seat, see _sit_or_stand
+        manner = MANNERS.get(clip.travel, WALK)
+        route.travel(path, heading, manner, task.speed, stride, rng)
+    elif route.seat is None and clip.seat == "keep":
+        turn = clip.turn * (1.0 if rng.random() < 0.5 else -1.0) if clip.turn and task.target is None else 0.0
+        to = heading if heading is not None else _facing(task, route.at)
+        if turn:
+            route.travel(None, route.heading + turn, WALK, task.speed, rng=rng)
+        elif to is not None and (heading is not None or abs(wrap(to - route.heading)) > 0.6):
+            route.travel(None, to, WALK, task.speed, rng=rng)
+
+
+def _facing(task: Task, at: Array) -> float | None:
+    """Heading towards what the clip faces, from ``at``."""
+    point = (
+        task.target if task.clip.faces == "target" else task.second if task.clip.faces == "second" else None
+    )
+    if point is None:
+        return None
+    if point.facing is not None and task.path is not None and point.character is None:
+        return point.facing
+    d = np.array(point.gaze[:2]) - at
+    return float(np.arctan2(d[1], d[0])) if np.hypot(*d) > 0.15 else None
+
+
+def _sit_or_stand(plan: Plan, task: Task, rng: np.random.Generator) -> None:
+    clip, route = task.clip, plan.route
+    if clip.seat == "up" and route.seat is not None:
+        route.stand(STAND_TIME / task.speed)
+    seat = task.target.seat if task.target is not None else None
+    if clip.seat != "down" or seat is None or task.target is None:
+        return
+    if route.seat is not None:
+        if np.hypot(route.seat[0] - seat[0], route.seat[1] - seat[1]) < 0.3:
+            return
+        route.stand(STAND_TIME / task.speed)
+    facing = task.target.facing if task.target.facing is not None else task.arrive_heading
+    if facing is None:
+        away = route.at - np.array(seat[:2])
+        facing = float(np.arctan2(away[1], away[0]))
+    stand = route.stand_point(seat, facing)
+    ways = (
+        [np.asarray(task.path, dtype=np.float64)[:, :2]] if task.path is not None and len(task.path) else []
+    )
+    if ways:  # drop the path's end where it overshoots the place before the seat
+        near = np.linalg.norm(ways[0] - stand, axis=1) > 0.35
+        ways[0] = ways[0][: int(np.max(np.nonzero(near)[0])) + 1] if near.any() else ways[0][:1]
+    route.travel(np.concatenate([*ways, stand[None]]), facing, WALK, task.speed, rng=rng)
+    route.sit(seat, facing, SIT_TIME / task.speed)
+
+
+def _take_needed(plan: Plan, task: Task, props: dict[int, PropState]) -> None:
+    need = {"target": task.target, "second": task.second}.get(task.clip.needs)
+    if need is None or need.object is None or need.object in plan.held.values():
+        return
+    prop = props.get(need.object)
+    if prop is None or len(plan.held) == 2:
+        return
+    grip = prop.world_from_object @ np.array([*prop.grip, 1.0])
+    at = TargetPoint((float(grip[0]), float(grip[1]), float(grip[2])), need.gaze, need.object)
+    duration = PICK_TIME / task.speed
+    _play(plan, PICK, plan.route.now, duration, replace(task, target=at, second=None))
+    plan.route.now += duration
+
+
+def _play(plan: Plan, timeline: Timeline, start: float, duration: float, task: Task) -> None:
+    """Adds a window and the moments its grasps stand for."""
+    target, second = task.target, task.second
+    partner = next((p.character for p in (second, target) if p is not None and p.character), None)
+    hands = choose_hands(plan, target, start)
+    plan.windows.append(Window(timeline, start, duration, hands, target, second, partner))
+    for grasp in timeline.grasps:
+        _grasp(plan, grasp, hands, start + grasp.time * duration, target, second, partner)
+
+
+def _grasp(
+    plan: Plan,
+    grasp: Grasp,
+    hands: dict[str, str],
+    time: float,
+    target: TargetPoint | None,
+    second: TargetPoint | None,
+    partner: str | None,
+) -> None:
+    hand = hands.get(grasp.hand, grasp.hand)
+    if grasp.kind == "take":
+        thing = target.object if target is not None else None
+        if thing is not None and thing not in plan.held.values() and hand not in plan.held:
+            plan.held[hand] = thing
+            plan.events.append(Event(time, "take", plan.name, hand, thing))
+    elif hand in plan.held:
+        thing = plan.held[hand]
+        if grasp.kind == "put":
+            place = put_place(thing, target, second)
+            del plan.held[hand]
+            plan.events.append(Event(time, "put", plan.name, hand, thing, place=place))
+        elif partner is not None:
+            del plan.held[hand]
+            plan.events.append(Event(time, "pass", plan.name, hand, thing, receiver=partner))
+
+
+def put_place(thing: int, target: TargetPoint | None, second: TargetPoint | None) -> Point | None:
+    """Where a held thing is put: the second thing named, else the first unless it is the thing itself."""
+    for point in (second, target):
+        if point is not None and point.object != thing and point.character is None:
+            return point.position
+    return None
+
+
+def choose_hands(plan: Plan, target: TargetPoint | None, time: float) -> dict[str, str]:
+    """What the hand words mean for this person now."""
+    xy, yaw = plan.route.root(np.array([time]))
+    side = "r"
+    if target is not None:
+        d = np.array(target.position[:2]) - xy[0]
+        across = -np.sin(yaw[0]) * d[0] + np.cos(yaw[0]) * d[1]
+        side = "l" if across > 0.08 else "r"
+    if target is not None and target.object in plan.held.values():
+        holding = next(h for h, o in plan.held.items() if o == target.object)
+    else:
+        holding = next(iter(sorted(plan.held, reverse=True)), side)
+    near = side if side not in plan.held or len(plan.held) == 2 else other(side)
+    free = other(holding) if holding in plan.held else near
+    return {
+        "left": "l", "right": "r", "l": "l", "r": "r",
+        "near": near, "other": other(near), "holding": holding, "free": free,
+    }  # fmt: skip
+
+
+def other(hand: str) -> str:
+    return "r" if hand == "l" else "l"
+
+
+def add_partner(plan: Plan, timeline: Timeline, window: Window, giver: Plan) -> None:
+    """The other person's part of an action, in step with ``window`` of the one who acts."""
+    head = float(giver.actor.skeleton.bind[JOINT["head"]][2])
+    xy, _ = giver.route.root(np.array([window.at(0.5)]))
+    point = TargetPoint((float(xy[0, 0]), float(xy[0, 1]), 0.8 * head), (float(xy[0, 0]), float(xy[0, 1]), head),
+                        character=giver.name)  # fmt: skip
+    route = plan.route
+    if route.seat is None:
+        to = float(np.arctan2(*(xy[0] - route.at)[::-1]))
+        if abs(wrap(to - route.heading)) > 0.9:
+            route.now = max(0.0, window.start - 0.6)
+            route.travel(None, to, WALK, 1.0)
+    hands = choose_hands(plan, point, window.start)
+    if not plan.held:
+        hands.update(near="r", free="r", holding="r", other="l")
+    plan.windows.append(Window(timeline, window.start, window.duration, hands, point, None, giver.name))
+    plan.end = max(plan.end, route.now)
+
+
+def _path_length(path: Array) -> float:
+    return float(np.sum(np.linalg.norm(np.diff(np.asarray(path)[:, :2], axis=0), axis=1)))

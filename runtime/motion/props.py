@@ -1,0 +1,79 @@
+"""Things over time: lying, held, passed on, put down."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from runtime.body.skeleton import JOINT
+
+from .contacts import SIDE, HandTracks
+from .curves import ramp
+from .figure import Figure
+from .rotations import blend
+from .types import Point, PropState
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Hold:
+    """A person's hand holds a thing from ``start`` to ``end`` (±1e9: all along), then it stands at ``place``."""
+
+    person: str
+    hand: str
+    start: float
+    end: float
+    place: Point | None
+
+
+def track_prop(
+    prop: PropState,
+    holds: list[Hold],
+    t: Array,
+    palms: dict[str, Array],
+    figures: dict[str, Figure],
+    tracks: dict[str, HandTracks],
+    goals: dict[str, Array],
+) -> Array:
+    """world_from_object [T, 4, 4] of one thing.
+
+    While held its grip is at the palm and it turns with the hand; taking and putting down are eased over
+    a fraction of a second in which the hand stands still at it.
+    """
+    frames = len(t)
+    position = np.broadcast_to(prop.world_from_object[:3, 3], (frames, 3)).copy()
+    rotation = np.broadcast_to(prop.world_from_object[:3, :3], (frames, 3, 3)).copy()
+    grip = np.asarray(prop.grip, dtype=np.float64)
+    for hold in holds:
+        if hold.person not in figures:
+            continue
+        k = SIDE[hold.hand]
+        start = int(np.clip(np.searchsorted(t, hold.start), 0, frames - 1))
+        wished = tracks[hold.person].held_rotation(k, start, rotation[start])
+        hand = figures[hold.person].rotation[:, JOINT[f"hand_{hold.hand}"]]
+        turned = hand @ np.swapaxes(goals[hold.person][k], -1, -2) @ wished
+        at = palms[hold.person][k] - turned @ grip
+        share = ramp(t, hold.start - 0.04, hold.start + 0.26)
+        position = position + share[:, None] * (at - position)
+        rotation = blend(rotation, turned, share)
+        if hold.end < 1e8 and hold.place is not None:
+            share = ramp(t, hold.end - 0.2, hold.end + 0.02)
+            standing = _upright(rotation[min(int(np.searchsorted(t, hold.end)), frames - 1)])
+            position = position + share[:, None] * (np.asarray(hold.place) - position)
+            rotation = blend(rotation, np.broadcast_to(standing, rotation.shape), share)
+        elif hold.end < 1e8:
+            stop = min(int(np.searchsorted(t, hold.end)), frames - 1)
+            position[stop:], rotation[stop:] = position[stop], rotation[stop]
+    out = np.zeros((frames, 4, 4))
+    out[:, :3, :3], out[:, :3, 3], out[:, 3, 3] = rotation, position, 1.0
+    return out
+
+
+def _upright(rotation: Array) -> Array:
+    """The nearest rotation about Z alone."""
+    yaw = np.arctan2(rotation[1, 0] - rotation[0, 1], rotation[0, 0] + rotation[1, 1])
+    c, s = np.cos(yaw), np.sin(yaw)
+    return np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])

@@ -1,7 +1,8 @@
-"""The table of diagnostic codes: a title, and what ``vdsc explain`` says.
+# ruff: noqa: E501 (a table of prose; its lines are sentences)
+"""The table of diagnostic codes: a title, why, a wrong and a right example (``vdsc explain``).
 
 Ranges: VDS001-099 the language, VDS100-139 sets and props, VDS140-159 actions, VDS160-169 the cast.
-An explanation is plain text; examples are indented by four spaces, first the wrong, then the right one.
+The examples of VDS001-099 are tests: the wrong one gives its code, the right one no error at all.
 """
 
 from __future__ import annotations
@@ -11,13 +12,460 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Code:
-    """title: a few words, lower case; explanation: paragraphs with a wrong and a right example."""
+    """title: a few words, lower case; why: a paragraph or two; wrong, right: lines of a script."""
 
     title: str
-    explanation: str
+    why: str
+    wrong: str = ""
+    right: str = ""
 
 
-CODES: dict[str, Code] = {}
+CODES: dict[str, Code] = {
+    # -- lines and signs -----------------------------------------------------------------
+    "VDS001": Code(
+        "this line does not read",
+        "A line of a script is one statement, and this one has something that has no place in its kind of "
+        "statement, or ends too early. The message shows what such a line looks like.",
+        "(anna walk, counter)",
+        "(anna walk counter)",
+    ),
+    "VDS002": Code(
+        "parenthesis without its partner",
+        "Every `(` has its `)`. In the story they are on the same line; inside a definition a value in "
+        "parentheses may run over several lines.",
+        "(anna walk counter",
+        "(anna walk counter)",
+    ),
+    "VDS003": Code(
+        "brace without its partner",
+        "The braces of a definition hold its entries. The opening brace stands at the end of the line it belongs "
+        "to, the closing one where the definition ends.",
+        "prop shelf_a {\n    box (1, 1, 1)m",
+        "prop shelf_a {\n    box (1, 1, 1)m\n}",
+    ),
+    "VDS004": Code(
+        "text without its closing quote",
+        'A text stands between two `"` on one line. A quote inside is written `\\"`.',
+        '(anna wave) say "Hello.',
+        '(anna wave) say "Hello."',
+    ),
+    "VDS005": Code(
+        "line too long",
+        "A line may have 20,000 characters. What is longer is no line somebody wrote; perhaps the file is no script.",
+    ),
+    "VDS006": Code(
+        "nested too deeply",
+        "Values and braces may stand inside each other, but not without end.",
+    ),
+    "VDS007": Code(
+        "`;` outside a definition",
+        "A semicolon separates entries inside the braces of a definition. In the story each statement has a line "
+        "of its own.",
+        "(anna wave); (ben wave)",
+        "(anna wave)\n(ben wave)",
+    ),
+    "VDS008": Code(
+        "unknown unit",
+        "Numbers have units: m, cm, mm for lengths, deg for angles, s and f (frames) for times, % for shares; "
+        "the unit follows the number without a space.",
+        "(anna walk) 4sec",
+        "(anna walk) 4s",
+    ),
+    "VDS009": Code(
+        "said twice in one placement",
+        "A placement says once where, once in which direction and once in which posture.",
+        "ben at counter at chair_1",
+        "ben at counter",
+    ),
+    "VDS010": Code(
+        "`|` without a word on both sides",
+        "A bar joins the words of a choice: the compiler proposes each of them.",
+        "(anna walk) / (push| medium eye-level)\n(anna walk) / (|push medium eye-level)",
+        "(anna walk) / (push|static medium eye-level)",
+    ),
+    "VDS011": Code(
+        "braces in the story",
+        "Only definitions (set, prop, cast, action) have braces. The story is one statement a line.",
+        "scene kitchen = apartment.kitchen {\n}",
+        "scene kitchen = apartment.kitchen",
+    ),
+    "VDS012": Code(
+        "definition without a body",
+        "A definition has its entries in braces, the opening brace on the line of its head.",
+        "prop shelf_a",
+        "prop shelf_a {\n    box (1, 1, 1)m\n}",
+    ),
+    "VDS013": Code(
+        "no statement begins like this",
+        "A line begins with a word of the language (storyboard, character, scene, cut …), with a character who is "
+        "placed (`anna at door`), with `(` for what happens or with `/` for a camera.",
+        "charakter carla = woman",
+        "character carla = woman",
+    ),
+    # -- files -----------------------------------------------------------------------------
+    "VDS014": Code(
+        "this is no text file",
+        "Scripts are UTF-8 text. A byte-order mark and Windows line ends are fine. Other encodings and binary "
+        "files are not read.",
+    ),
+    "VDS015": Code(
+        "path outside the project",
+        "Files are named relative to the script and stay inside its folder, so that a script cannot reach into "
+        "the rest of the machine, and a project can be moved as a whole.",
+        'use "../other/common.vds"',
+        "",
+    ),
+    "VDS016": Code(
+        "file cannot be read",
+        "The file a `use` line names is missing or may not be read. The path is relative to the file it is "
+        "written in.",
+        'use "no_such_file.vds"',
+        "",
+    ),
+    "VDS017": Code(
+        "definition from another program's file",
+        "Models and motions of other programs (.glb, .obj, .bvh) are not read yet. Sets, props, cast and actions "
+        "can be written in text; `docs/language.md` shows how.",
+        'prop lamp_a = "lamp.glb"',
+        "prop lamp_a {\n    cylinder 3cm, height 1.4m\n}",
+    ),
+    "VDS018": Code(
+        "defined twice",
+        "Within a file a name stands for one definition of its kind. A definition of yours may have the name of "
+        "one in the library: then yours is taken.",
+        "prop a { box (1, 1, 1)m }\nprop a { box (2, 1, 1)m }",
+        "prop a { box (1, 1, 1)m }\nprop b { box (2, 1, 1)m }",
+    ),
+    # -- values ----------------------------------------------------------------------------
+    "VDS020": Code(
+        "a unit is missing",
+        "A bare number where a length, an angle or a time is wanted could mean anything, so it is not guessed. "
+        "Only 0 needs no unit.",
+        "(anna walk) lens 50",
+        "(anna walk) lens 50mm",
+    ),
+    "VDS021": Code(
+        "the wrong kind of value",
+        "A length was wanted and an angle is written, or a number and a word, or two kinds are added up.",
+        "character carla = woman(height 90deg)",
+        "character carla = woman(height 1.7m)",
+    ),
+    "VDS022": Code(
+        "unknown parameter",
+        "Props and cast have the parameters their definition names, and no others.",
+        "character carla = woman(hight 1.7m)",
+        "character carla = woman(height 1.7m)",
+    ),
+    "VDS023": Code(
+        "given twice",
+        "An argument, a parameter or an option is written once.",
+        "character carla = woman(height 1.7m, height 1.8m)",
+        "character carla = woman(height 1.7m)",
+    ),
+    "VDS024": Code(
+        "one value is wanted",
+        "What is written has no value, or several where one is taken. Options and arguments are separated by commas.",
+        "character carla = woman(height 1.7m hair bob)",
+        "character carla = woman(height 1.7m, hair bob)",
+    ),
+    "VDS025": Code(
+        "parameter without a default",
+        "A parameter in the head of a definition has a default: it says what kind of value it is, too.",
+        "prop shelf_a(width) { box (1, 1, 1)m }",
+        "prop shelf_a(width 1m) { box (width, 1m, 1m) }",
+    ),
+    "VDS026": Code(
+        "not one of the words",
+        "Where there are fixed words to choose from, it must be one of them.",
+        "character carla = woman(build big)",
+        "character carla = woman(build heavy)",
+    ),
+    "VDS027": Code(
+        "unknown number",
+        "Names in arithmetic are the parameters of the definition and the counters of `repeat`. As `-` may be part "
+        "of a name, a minus between two values has spaces around it.",
+        "prop shelf_a(width 1m) { box (widht, 1m, 1m) }",
+        "prop shelf_a(width 1m) { box (width, 1m, 1m) }",
+    ),
+    "VDS028": Code(
+        "division by zero",
+        "The value after `/` comes out as 0.",
+        "prop shelf_a(width 1m) { box (width / 0, 1m, 1m) }",
+        "prop shelf_a(width 1m) { box (width / 2, 1m, 1m) }",
+    ),
+    # -- entries of definitions --------------------------------------------------------------
+    "VDS029": Code(
+        "something is missing in this entry",
+        "The entry needs a value that is not written.",
+        "prop shelf_a { box }",
+        "prop shelf_a { box (1, 1, 1)m }",
+    ),
+    "VDS030": Code(
+        "unknown option of an entry",
+        "Options nobody reads would be silently without effect, so they are errors.",
+        "prop shelf_a { box (1, 1, 1)m, colour oak }",
+        "prop shelf_a { box (1, 1, 1)m, color oak }",
+    ),
+    "VDS031": Code(
+        "a value nobody takes",
+        "The entry has more than it can use; often a comma is missing.",
+        "prop shelf_a { box (1, 1, 1)m oak }",
+        "prop shelf_a { box (1, 1, 1)m, color oak }",
+    ),
+    "VDS032": Code(
+        "the wrong count of numbers",
+        "A point on the floor has two numbers, one in space and a size have three.",
+        "prop shelf_a { box (1, 1)m }",
+        "prop shelf_a { box (1, 1, 1)m }",
+    ),
+    "VDS033": Code(
+        "unknown entry",
+        "Each kind of definition has its own entries; `docs/language.md` lists them.",
+        "prop shelf_a { bocks (1, 1, 1)m }",
+        "prop shelf_a { box (1, 1, 1)m }",
+    ),
+    # -- the file as a whole -----------------------------------------------------------------
+    "VDS034": Code(
+        "nothing happens in this script",
+        "A story needs a scene and something that happens in it. A first script to type:\n\n"
+        '    storyboard "Hello"\n'
+        "    character anna = woman\n"
+        "    scene kitchen = apartment.kitchen\n"
+        "    anna at door\n"
+        "    (anna walk counter) / (follow full eye-level)",
+    ),
+    "VDS035": Code(
+        "header line out of place",
+        "The header (storyboard, fps, size, aspect, seed, rig, style, takes, proposals) stands before the first "
+        "scene, each of its lines at most once.",
+        "fps 24\nfps 25",
+        "fps 24",
+    ),
+    "VDS036": Code(
+        "bad value in the header",
+        "Each header line takes one kind of value: `fps 24`, `size 1280x720`, `aspect 2.39`, `seed 7`, "
+        "`rig cinema`, `style board`, `takes 5`, `proposals 80`.",
+        "fps 1000",
+        "fps 24",
+    ),
+    "VDS037": Code(
+        "odd picture size",
+        "Video is stored with half as many colour samples as pixels in each direction, so that width and height "
+        "are even.",
+        "size 1279x720",
+        "size 1280x720",
+    ),
+    # -- the camera --------------------------------------------------------------------------
+    "VDS040": Code(
+        "unknown camera word",
+        "A camera line has a movement (static, follow, push, pull, zoom, tilt, pan, dolly, pedestal, arc), a scale "
+        "(close-up, medium, full, wide) and an angle (eye-level, high-angle, low-angle). Each may be `*`, a "
+        "choice like push|static, or left out.",
+        "(anna walk) / (folow full eye-level)",
+        "(anna walk) / (follow full eye-level)",
+    ),
+    "VDS041": Code(
+        "a camera word that cannot be shot yet",
+        "Film grammar has more sizes, angles and movements than can be shot so far. The suggestion is the nearest "
+        "one that can.",
+        "(anna walk) / (static cowboy eye-level)",
+        "(anna walk) / (static medium eye-level)",
+    ),
+    "VDS042": Code(
+        "two camera words of one kind",
+        "A camera line has one movement, one scale and one angle. Several to choose from are joined by a bar.",
+        "(anna walk) / (push static medium eye-level)",
+        "(anna walk) / (push|static medium eye-level)",
+    ),
+    "VDS043": Code(
+        "one `*` too many",
+        "A `*` takes the place of a movement, a scale or an angle that is not said otherwise.",
+        "(anna walk) / (push medium eye-level *)",
+        "(anna walk) / (push * eye-level)",
+    ),
+    "VDS044": Code(
+        "MCS is a medium close shot",
+        "MCS is often written for a cowboy shot (down to the thigh), but means a medium close shot (down to the "
+        "breast pocket). It is taken as a close-up, the nearest size there is.",
+        "(anna walk) / (static MCS eye-level)",
+        "(anna walk) / (static close-up eye-level)",
+    ),
+    "VDS045": Code(
+        "nobody to follow",
+        "A camera line alone is an establishing shot: nobody acts in it, so there is no one to follow. Directly "
+        "below a story line, without a blank line between, it is another camera on that line.",
+        "\n/ (follow wide eye-level)",
+        "\n/ (pan wide eye-level)",
+    ),
+    # -- options -----------------------------------------------------------------------------
+    "VDS050": Code(
+        "unknown option",
+        "Options after a line are separated by commas: lens 50mm, ease slow-in, 4s, roll 12deg, focus NAME, "
+        'say "…", note "…", proposals 80, takes 5, speed brisk, style ink.',
+        "(anna walk) lense 50mm",
+        "(anna walk) lens 50mm",
+    ),
+    "VDS051": Code(
+        "option said twice",
+        "Each option is said once on a line.",
+        "(anna walk) lens 50mm, lens 35mm",
+        "(anna walk) lens 35..50mm",
+    ),
+    "VDS052": Code(
+        "an option takes one value",
+        "The value is missing, or there is one too many; often a comma is.",
+        "(anna walk) lens 50mm ease slow-in",
+        "(anna walk) lens 50mm, ease slow-in",
+    ),
+    "VDS053": Code(
+        "the wrong unit",
+        "A lens is measured in mm, a time in s or f (frames), an angle in deg.",
+        "(anna walk) lens 5cm",
+        "(anna walk) lens 50mm",
+    ),
+    "VDS054": Code(
+        "out of range",
+        "The value is smaller or larger than can be: a lens has 8mm to 400mm, a shot lasts up to two minutes, a "
+        "camera rolls up to 90deg.",
+        "(anna walk) lens 0mm",
+        "(anna walk) lens 24mm",
+    ),
+    "VDS055": Code(
+        "the wrong kind of value for this option",
+        "The option takes a text in quotes, a name, a number or a word; the message has an example.",
+        "(anna wave) say hello",
+        '(anna wave) say "hello"',
+    ),
+    "VDS056": Code(
+        "unknown word for this option",
+        "ease is slow-in, slow-out or linear; speed is slow, calm, normal, brisk, fast or a factor; style is board, "
+        "clay or ink.",
+        "(anna walk) ease slowly",
+        "(anna walk) ease slow-in",
+    ),
+    # -- names -------------------------------------------------------------------------------
+    "VDS060": Code(
+        "unknown name",
+        "Names of things and places are looked for inside the scene first, then in the rest of the set. Parts are "
+        "reached with dots, as in chair_2.seat.",
+        "(anna walk conter)",
+        "(anna walk counter)",
+    ),
+    "VDS061": Code(
+        "ambiguous name",
+        "Several things in the set have this name, none of them nearer than the others. Say which, by as much of "
+        "its path as it takes.",
+        "(anna walk lamp)",
+        "(anna walk living.lamp)",
+    ),
+    "VDS062": Code(
+        "unknown set or room",
+        "A scene is a set of the library or of your own, or a room of one, named with a dot.",
+        "scene k2 = apartment.kitchn",
+        "scene k2 = apartment.kitchen",
+    ),
+    "VDS063": Code(
+        "a scene is missing or wrongly said",
+        "What happens, happens in a scene: `scene NAME = SET.ROOM at TIME`. The time of day is dawn, day, dusk or "
+        "night.",
+        "scene k2 = apartment.kitchen at noon",
+        "scene k2 = apartment.kitchen at day",
+    ),
+    "VDS064": Code(
+        "unknown cast",
+        "A character is one of the cast in the library or one defined in the script, dressed by its parameters.",
+        "character carla = womman",
+        "character carla = woman",
+    ),
+    "VDS065": Code(
+        "unknown character",
+        "Who takes part has a `character` line before.",
+        "(anja walk)",
+        "(anna walk)",
+    ),
+    "VDS066": Code(
+        "character defined twice",
+        "A name stands for one character through the whole storyboard.",
+        "character anna = man",
+        "character anton = man",
+    ),
+    "VDS067": Code(
+        "impossible height",
+        "People are 0.5m to 2.6m tall.",
+        "character carla = woman(height 17m)",
+        "character carla = woman(height 1.7m)",
+    ),
+    "VDS068": Code(
+        "placed twice",
+        "In a scene everyone is placed once, before they do anything; after that they walk.",
+        "anna at counter",
+        "(anna walk counter)",
+    ),
+    "VDS069": Code(
+        "nothing to sit on",
+        "One sits on what has a seat: a chair, a sofa, a bench, or a spot called seat.",
+        "ben at counter sitting",
+        "ben at chair_1 sitting",
+    ),
+    # -- what happens ------------------------------------------------------------------------
+    "VDS070": Code(
+        "nothing is done",
+        "Between the parentheses stand a character, an action and what it is done to.",
+        "(anna)",
+        "(anna wave)",
+    ),
+    "VDS071": Code(
+        "unknown action",
+        "Actions are those of the library and those defined in the script. They are said as they are called: walk, "
+        "not walks. An action of two words may be written with a space: pick up.",
+        "(anna walks counter)",
+        "(anna walk counter)",
+    ),
+    "VDS072": Code(
+        "a target is missing",
+        "The action is done to something or someone, or at a place, and that is not said.",
+        "(anna pick up)",
+        "(anna pick up cup)",
+    ),
+    "VDS073": Code(
+        "a target too many",
+        "An action has no, one or two targets. A second one follows a word like to, at, with, from, in, into, on, onto.",
+        "(anna pour cup table)",
+        "(anna pour cup)",
+    ),
+    "VDS074": Code(
+        "an action for something else",
+        "The action is not done to this kind of target: one greets people and picks up things.",
+        "(anna greet cup)",
+        "(anna greet ben)",
+    ),
+    "VDS075": Code(
+        "done to oneself",
+        "Someone is the target of their own action.",
+        "(anna greet anna)",
+        "(anna greet ben)",
+    ),
+    "VDS076": Code(
+        "two things at once",
+        "Actions joined by `+` run at the same time, so each is someone else's.",
+        "(anna walk) + (anna wave)",
+        "(anna walk) + (ben wave)",
+    ),
+    "VDS078": Code(
+        "transition without two sides",
+        "A transition stands between two story lines and joins them in one way. A film may begin with a fade-in and "
+        "end with a fade-out, and a fade-in may follow a fade-out.",
+        "(anna wave)\ndissolve 12f\nwipe\n(anna walk)",
+        "(anna wave)\ndissolve 12f\n(anna walk)",
+    ),
+    "VDS079": Code(
+        "someone has no place yet",
+        "Someone takes part in a scene and has not been placed in it. They are put at the scene's first free spot; "
+        "a placement says where they should be.",
+        "(carl walk)",
+        "carl at counter\n(carl walk)",
+    ),
+}
 
 
 def title(code: str) -> str:

@@ -1,0 +1,298 @@
+"""Props: from the entries of a definition to numbers.
+
+Assumes a parsed definition. Guarantees that a mistake is reported at its place and left out; what
+:meth:`PropDef.shape` returns is all finite numbers in metres and radians, ready to be made a mesh of.
+A prop's front looks along -Y, and its foot stands on z = 0.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field, replace
+
+from .. import ast
+from ..diagnostics import Report
+from ..evaluate import Bound, Quantity, parameter_env, read_parameters
+from ..source import Span
+from .colours import Colour, checked_colour
+from .reader import Reader, unknown_entry
+from .types import DefinitionBase
+
+Point = tuple[float, ...]
+
+PRIMITIVES = ("box", "cylinder", "sphere", "cone", "lathe", "extrude", "tube")
+ENTRIES = (*PRIMITIVES, "spot", "grip", "solid", "repeat")
+#: Same words as :data:`runtime.mesh.MATERIALS`, which the language may not import.
+MATERIALS = ("plain", "wood", "tile", "brick", "grass", "asphalt", "cloth", "glass", "glow", "carpet",
+             "concrete", "plaster")  # fmt: skip
+#: Directions a shape's own axis may be laid along.
+AXES = ("x", "y", "z", "-x", "-y", "-z")
+MAX_REPEAT = 200
+
+
+@dataclass(frozen=True)
+class Primitive:
+    """One solid of a prop, in numbers.
+
+    kind: one of :data:`PRIMITIVES`
+    size: box (x, y, z); cylinder (radius, height); sphere three radii; cone (low, high, height);
+        extrude (height,); tube (radius,); lathe ()
+    points: profile (r, z), outline (x, y) or path (x, y, z), metres
+    at: centre of the foot; of a sphere the centre
+    turn, tilt, lean: radians about Z, X and Y, in the order lean, tilt, turn; about ``pivot`` or ``at``
+    along: where the shape's own Z points, one of :data:`AXES`; of an outline, Y stays up
+    line: whether an ink line parts it from the primitive before it
+    """
+
+    kind: str
+    size: Point
+    points: tuple[Point, ...]
+    at: Point
+    turn: float
+    tilt: float
+    lean: float
+    pivot: Point | None
+    along: str
+    rounding: float
+    steps: int
+    segments: int | None
+    lumps: float
+    color: Colour
+    material: str
+    solid: bool
+    line: bool
+
+
+@dataclass(frozen=True)
+class PropSpot:
+    """A named place on a prop, in its coordinates; facing in radians or None."""
+
+    name: str
+    at: Point
+    facing: float | None
+
+
+@dataclass(frozen=True)
+class SolidBox:
+    """An upright box that stands in for (a part of) a prop: size, and the centre of its foot."""
+
+    size: Point
+    at: Point
+
+
+@dataclass(frozen=True)
+class PropShape:
+    """A prop with its arguments filled in.
+
+    solids: None where they follow from the primitives, () for nothing in the way
+    grip: where a hand takes hold, None for what cannot be carried
+    """
+
+    primitives: tuple[Primitive, ...]
+    spots: tuple[PropSpot, ...]
+    grip: Point | None
+    solids: tuple[SolidBox, ...] | None
+
+
+@dataclass(frozen=True)
+class PropDef(DefinitionBase):
+    """A prop as defined. ``spots``: names, in order; ``movable``: it has a grip."""
+
+    spots: tuple[str, ...]
+    movable: bool
+    body: tuple[ast.Entry, ...] = field(compare=False, repr=False)
+
+    def shape(
+        self, arguments: Mapping[str, float | str] | None = None, report: Report | None = None
+    ) -> PropShape:
+        """The prop in numbers; arguments override the defaults. Parts with no size left are left out."""
+        report = Report() if report is None else report
+        return _shape(self.body, parameter_env(self.parameters, arguments), report)
+
+
+def read_prop(definition: ast.Definition, report: Report) -> PropDef | None:
+    """Check a prop's definition, with its defaults filled in."""
+    parameters = read_parameters(definition.parameters, report)
+    shape = _shape(definition.body, parameter_env(parameters), report, strict=True)
+    spots = tuple(dict.fromkeys(spot.name for spot in shape.spots))
+    return PropDef(
+        definition.name.text, parameters, definition.span, spots, shape.grip is not None, definition.body
+    )
+
+
+def unrolled(
+    entries: tuple[ast.Entry, ...], env: Mapping[str, Bound], report: Report
+) -> Iterator[tuple[ast.Entry, Mapping[str, Bound]]]:
+    """Entries in order with the names they may use, ``repeat NAME COUNT { }`` written out."""
+    for entry in entries:
+        if entry.head.text != "repeat":
+            yield entry, env
+            continue
+        reader = Reader(entry, env, report)
+        name = reader.value(0)
+        count = reader.value_number(1)
+        body = reader.body()
+        reader.done()
+        if not isinstance(name, ast.Name) or len(name.parts) != 1:
+            reader.missing("a name to count with, as in `repeat i 4 { … }`")
+            continue
+        if not (0 <= count <= MAX_REPEAT and count == int(count)):
+            label = f"a whole number from 0 to {MAX_REPEAT} is wanted here"
+            report.error("VDS102", entry.values[1].span if len(entry.values) > 1 else entry.span, label=label)
+            continue
+        for i in range(int(count)):
+            yield from unrolled(body, {**env, name.text: Quantity(float(i), "number")}, report)
+
+
+def _shape(
+    body: tuple[ast.Entry, ...], env: Mapping[str, Bound], report: Report, strict: bool = False
+) -> PropShape:
+    primitives: list[Primitive] = []
+    spots: list[PropSpot] = []
+    grip: Point | None = None
+    solids: list[SolidBox] | None = None
+    for entry, names in unrolled(body, env, report):
+        reader = Reader(entry, names, report)
+        head = reader.head
+        if head in PRIMITIVES:
+            primitive = _primitive(reader, strict)
+            if primitive is not None:
+                primitives.append(primitive)
+        elif head == "spot":
+            spots.append(read_spot(reader, 3))
+        elif head == "grip":
+            grip = reader.value_point(0, None, 3)
+            reader.done()
+        elif head == "solid":
+            solids = solids or []
+            box = _solid(reader)
+            if box is not None:
+                solids.append(box)
+        else:
+            unknown_entry(entry, ENTRIES, "a prop", report)
+    return PropShape(tuple(primitives), tuple(spots), grip, None if solids is None else tuple(solids))
+
+
+def read_spot(reader: Reader, size: int) -> PropSpot:
+    """``spot NAME, at (x, y, z), facing 90deg``; in a room (x, y)."""
+    value = reader.value(0)  # a name of its own, even where a parameter is called the same
+    name = value.text if isinstance(value, ast.Name) else reader.value_word(0)
+    at = reader.point("at", (0.0,) * size, size)
+    facing = reader.angle("facing", None)
+    reader.done()
+    return PropSpot(name, (*at, 0.0)[:3], facing)
+
+
+def _solid(reader: Reader) -> SolidBox | None:
+    """``solid no`` or ``solid (width, depth, height), at (x, y, z)``."""
+    value = reader.value(0)
+    at = reader.point("at", (0.0, 0.0, 0.0), 3)
+    if isinstance(value, ast.Group):
+        size = reader.value_point(0, None, 3)
+        reader.done()
+        return SolidBox(size, at) if min(size) > 0 else None
+    reader.value_word(0, None, ("no",))
+    reader.done()
+    return None
+
+
+def _primitive(reader: Reader, strict: bool) -> Primitive | None:
+    size, points = _measures(reader)
+    span = reader.span
+    material = reader.word("material", "plain", MATERIALS)
+    written = reader.colour("color", "#d0d0cc")
+    shade = reader.number("shade", 1.0)
+    base = checked_colour(written, _option_span(reader, "color"), reader.report)
+    segments = reader.number("segments", None)
+    primitive = Primitive(
+        kind=reader.head,
+        size=size,
+        points=points,
+        at=reader.point("at", (0.0, 0.0, 0.0), 3),
+        turn=reader.angle("turn", 0.0),
+        tilt=reader.angle("tilt", 0.0),
+        lean=reader.angle("lean", 0.0),
+        pivot=reader.point("pivot", None, 3),
+        along=_along(reader),
+        rounding=reader.length("round", 0.0),
+        steps=int(min(max(reader.number("steps", 1.0), 1), 6)) if reader.head == "box" else 1,
+        segments=None if segments is None else int(min(max(segments, 3), 64)),
+        lumps=reader.number("lumps", 0.0) if reader.head == "sphere" else 0.0,
+        color=(min(base[0] * shade, 1.0), min(base[1] * shade, 1.0), min(base[2] * shade, 1.0)),
+        material=material,
+        solid=reader.flag("solid", True),
+        line=reader.flag("line", True),
+    )
+    reader.done()
+    fewest = {"lathe": 2, "extrude": 3, "tube": 2}.get(primitive.kind, 0)
+    if len(points) < fewest:
+        reader.report.error("VDS103", span, label=f"`{primitive.kind}` needs {fewest} points or more")
+        return None
+    if primitive.kind == "cone" and min(size[:2]) == 0 < max(size[:2]) and size[2] > 0:
+        return primitive
+    if size and min(size) <= 0:
+        if strict:
+            reader.report.error("VDS101", span, label="a size here is zero or less")
+        return None
+    return replace(primitive, rounding=max(primitive.rounding, 0.0))
+
+
+def _measures(reader: Reader) -> tuple[Point, tuple[Point, ...]]:
+    """What is particular to each kind: its size and its points."""
+    kind = reader.head
+    if kind == "box":
+        return reader.value_point(0, None, 3), ()
+    if kind == "cylinder":
+        return (reader.value_length(0), _height(reader)), ()
+    if kind == "cone":
+        return (reader.value_length(0), reader.value_length(1), _height(reader)), ()
+    if kind == "sphere":
+        if isinstance(reader.value(0), ast.Group) and len(reader.value(0).items) == 3:  # type: ignore[union-attr]
+            return reader.value_point(0, None, 3), ()
+        return (reader.value_length(0),) * 3, ()
+    if kind == "lathe":
+        return (), _points(reader, "profile", 2)
+    if kind == "extrude":
+        return (_height(reader),), _points(reader, "outline", 2)
+    return (reader.value_length(0),), _points(reader, "path", 3)
+
+
+def _height(reader: Reader) -> float:
+    height = reader.length("height", None)
+    if height is None:
+        reader.missing("`height`")
+        return 1.0
+    return height
+
+
+def _points(reader: Reader, name: str, size: int) -> tuple[Point, ...]:
+    points = reader.points(name)
+    if any(len(p) != size for p in points):
+        label = f"every point of `{name}` has {size} numbers"
+        reader.report.error("VDS103", _option_span(reader, name), label=label)
+        return ()
+    return points
+
+
+def _along(reader: Reader) -> str:
+    values = reader.option("along")
+    if values is None:
+        return "z"
+    value = values[0] if len(values) == 1 else None
+    sign = ""
+    if isinstance(value, ast.Negate):
+        sign, value = "-", value.value
+    if isinstance(value, ast.Name) and sign + value.text in AXES:
+        return sign + value.text
+    reader.report.error(
+        "VDS104", _option_span(reader, "along"), label="`along` is one of x, y, z, -x, -y and -z"
+    )
+    return "z"
+
+
+def _option_span(reader: Reader, name: str) -> Span:
+    """Where an option's value is written, or the whole entry."""
+    for option in reader.entry.options:
+        if option.name.text == name:
+            return option.values[0].span if option.values else option.span
+    return reader.span

@@ -1,0 +1,216 @@
+"""The walls of a set's rooms.
+
+Rooms meet in the middle of the wall they share. Every stretch between two corners becomes one wild
+wall, with a face in the colour of the room on either side; openings of the rooms on both sides are
+cut out of it. Ceilings are left out: they would hide the set from above and keep the light out.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from runtime.mesh import Mesh, join
+from runtime.shapes import Colour, painted
+
+from ..lang.definitions.set import WALL_THICKNESS, Opening, Room, SetDef
+
+SKIRTING_HEIGHT, SKIRTING_DEPTH = 0.09, 0.014
+TRIM: Colour = (0.955, 0.94, 0.9)
+
+
+@dataclass(frozen=True, eq=False)
+class Stretch:
+    """A wall between two corners, on the line ``across`` = constant.
+
+    axis: 0 where it runs along X, 1 along Y; across: its middle line; start, end: along the axis
+    before, after: indices of the rooms on its lower and upper side, or None for the outside
+    extend: metres added at each end to fill the corner
+    """
+
+    axis: int
+    across: float
+    start: float
+    end: float
+    height: float
+    before: int | None
+    after: int | None
+    extend: tuple[float, float]
+
+    def point(self, along: float) -> tuple[float, float]:
+        return (along, self.across) if self.axis == 0 else (self.across, along)
+
+
+@dataclass(frozen=True, eq=False)
+class Cut:
+    """An opening in a stretch: from ``low`` to ``high`` along it, ``sill`` to ``top`` up."""
+
+    low: float
+    high: float
+    sill: float
+    top: float
+
+
+def wall_line(room: Room, wall: str) -> tuple[int, float, float, float]:
+    """(axis, across, start, end) of one wall of a room, in the set."""
+    (x, y), (w, d) = room.at[:2], room.size[:2]
+    if wall in ("north", "south"):
+        return 0, y + (d if wall == "north" else 0.0), x, x + w
+    return 1, x + (w if wall == "east" else 0.0), y, y + d
+
+
+def stretches(definition: SetDef) -> list[Stretch]:
+    """All walls of a set, in a fixed order."""
+    sides: dict[tuple[int, float], list[tuple[float, float, int, int]]] = {}
+    for index, room in enumerate(definition.rooms):
+        if room.kind != "room":
+            continue
+        for wall in ("south", "north", "west", "east"):
+            axis, across, start, end = wall_line(room, wall)
+            side = 1 if wall in ("south", "west") else 0  # a south wall has its room on the upper side
+            key = (axis, round(across, 3))
+            sides.setdefault(key, []).append((round(start, 3), round(end, 3), side, index))
+    found = []
+    for (axis, across), parts in sorted(sides.items()):
+        ends = sorted({e for part in parts for e in part[:2]})
+        spans = []
+        for start, end in pairwise(ends):
+            rooms: list[int | None] = [None, None]
+            for a, b, side, index in parts:
+                if a <= start and end <= b:
+                    rooms[side] = index
+            if rooms != [None, None]:
+                spans.append((start, end, rooms))
+        for start, end, (before, after) in spans:
+            heights = [definition.rooms[i].size[2] for i in (before, after) if i is not None]
+            extend = (
+                0.0 if any(s[1] == start for s in spans) else WALL_THICKNESS / 2,
+                0.0 if any(s[0] == end for s in spans) else WALL_THICKNESS / 2,
+            )
+            found.append(Stretch(axis, across, start, end, max(heights), before, after, extend))
+    return found
+
+
+def find_stretch(walls: list[Stretch], room: Room, wall: str, at: float) -> int | None:
+    """Index of the stretch a place on a room's wall belongs to."""
+    axis, across, start, _ = wall_line(room, wall)
+    for index, stretch in enumerate(walls):
+        here = stretch.axis == axis and abs(stretch.across - across) < 1e-3
+        if here and stretch.start - 1e-6 <= start + at <= stretch.end + 1e-6:
+            return index
+    return None
+
+
+def cut_of(room: Room, opening: Opening) -> Cut:
+    """What an opening takes out of its wall."""
+    start = wall_line(room, opening.wall)[2]
+    middle = start + opening.at
+    return Cut(
+        middle - opening.width / 2, middle + opening.width / 2, opening.sill, opening.sill + opening.height
+    )
+
+
+def wall_pieces(stretch: Stretch, cuts: list[Cut]) -> list[tuple[float, float, float, float]]:
+    """The wall without its openings: (low, high, bottom, top) rectangles."""
+    pieces = []
+    position = stretch.start - stretch.extend[0]
+    for cut in sorted(cuts, key=lambda c: c.low):
+        low, high = max(cut.low, position), max(cut.high, position)
+        if low > position + 1e-6:
+            pieces.append((position, low, 0.0, stretch.height))
+        if high > low:
+            if cut.sill > 1e-6:
+                pieces.append((low, high, 0.0, cut.sill))
+            if cut.top < stretch.height - 1e-6:
+                pieces.append((low, high, cut.top, stretch.height))
+        position = high
+    last = stretch.end + stretch.extend[1]
+    if position < last - 1e-6:
+        pieces.append((position, last, 0.0, stretch.height))
+    return pieces
+
+
+def wall_mesh(
+    stretch: Stretch, cuts: list[Cut], colors: tuple[Colour, Colour], parts: tuple[int, int, int]
+) -> Mesh:
+    """The wall's two faces, its cut edges and its top.
+
+    colors, parts: of the face on the lower and the upper side; the third part is that of the edges
+    """
+    half = WALL_THICKNESS / 2
+    meshes = []
+    for low, high, bottom, top in wall_pieces(stretch, cuts):
+        for side in (0, 1):
+            across = stretch.across + (half if side else -half)
+            corners = [(low, across, bottom), (high, across, bottom), (high, across, top), (low, across, top)]
+            meshes.append(_quad(stretch.axis, corners, (0, 1 if side else -1, 0), colors[side], parts[side]))
+        a, b = stretch.across - half, stretch.across + half
+        edges = [
+            ([(low, a, bottom), (low, b, bottom), (low, b, top), (low, a, top)], (-1, 0, 0)),
+            ([(high, a, bottom), (high, b, bottom), (high, b, top), (high, a, top)], (1, 0, 0)),
+            ([(low, a, top), (high, a, top), (high, b, top), (low, b, top)], (0, 0, 1)),
+        ]
+        if bottom > 0:
+            edges.append(
+                ([(low, a, bottom), (high, a, bottom), (high, b, bottom), (low, b, bottom)], (0, 0, -1))
+            )
+        meshes += [_quad(stretch.axis, corners, normal, TRIM, parts[2]) for corners, normal in edges]
+    return join(meshes)
+
+
+def skirting(stretch: Stretch, cuts: list[Cut], side: int, clip: tuple[float, float], part: int) -> Mesh:
+    """A board along the foot of one side, within ``clip`` (the room's inside)."""
+    half = WALL_THICKNESS / 2
+    sign = 1 if side else -1
+    near = stretch.across + sign * half
+    far = near + sign * SKIRTING_DEPTH
+    meshes = []
+    for low, high, bottom, _ in wall_pieces(stretch, cuts):
+        low, high = max(low, clip[0]), min(high, clip[1])
+        if bottom > 0 or high - low < 0.02:
+            continue
+        h = SKIRTING_HEIGHT
+        front = [(low, far, 0.0), (high, far, 0.0), (high, far, h), (low, far, h)]
+        top = [(low, near, h), (high, near, h), (high, far, h), (low, far, h)]
+        meshes.append(_quad(stretch.axis, front, (0, sign, 0), TRIM, part))
+        meshes.append(_quad(stretch.axis, top, (0, 0, 1), TRIM, part))
+        for end, normal in ((low, -1), (high, 1)):
+            cap = [(end, near, 0.0), (end, far, 0.0), (end, far, h), (end, near, h)]
+            meshes.append(_quad(stretch.axis, cap, (normal, 0, 0), TRIM, part))
+    return join(meshes)
+
+
+def floor_mesh(room: Room, part: int) -> Mesh:
+    """A room's floor, to the middle of its walls, in a grid of quads about 2 m wide."""
+    (x, y), (w, d) = room.at[:2], room.size[:2]
+    nx, ny = max(1, round(w / 2.0)), max(1, round(d / 2.0))
+    gx, gy = np.meshgrid(np.linspace(x, x + w, nx + 1), np.linspace(y, y + d, ny + 1), indexing="ij")
+    vertices = np.stack([gx.ravel(), gy.ravel(), np.zeros(gx.size)], 1)
+    i, j = np.meshgrid(np.arange(nx), np.arange(ny), indexing="ij")
+    a = (i * (ny + 1) + j).ravel()
+    quads = np.stack([a, a + ny + 1, a + ny + 2, a + 1], 1)
+    faces = np.concatenate([quads[:, [0, 1, 2]], quads[:, [0, 2, 3]]])
+    normals = np.tile([0.0, 0.0, 1.0], (len(vertices), 1))
+    return painted(vertices, faces, normals, room.floor_color, room.floor, part)
+
+
+def _quad(
+    axis: int,
+    corners: list[tuple[float, float, float]],
+    normal: tuple[int, int, int],
+    color: Colour,
+    part: int,
+) -> Mesh:
+    """Four corners given as (along, across, up), facing ``normal`` in the same terms."""
+    points = np.array(corners, np.float64)
+    facing = np.array(normal, np.float64)
+    if axis == 1:
+        points, facing = points[:, [1, 0, 2]], facing[[1, 0, 2]]
+    order: NDArray[np.int64] = np.array([[0, 1, 2], [0, 2, 3]])
+    if np.cross(points[1] - points[0], points[2] - points[0]) @ facing < 0:
+        order = order[:, ::-1]
+    material = "plaster" if abs(normal[1]) == 1 else "plain"
+    return painted(points, order, np.tile(facing, (4, 1)), color, material, part)

@@ -1,0 +1,362 @@
+"""From a set's definition to a :class:`World`: meshes, solids, floors, walls and light.
+
+Assumes a set that :func:`check_set` found no error in; what is wrong all the same is left out.
+Guarantees that the same set gives the same world, that every `stand` spot it keeps is free and on a
+floor, and that movable things are not part of the static mesh.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from runtime.mesh import MATERIALS, Mesh, join
+from runtime.shapes import Colour, painted
+from runtime.world import Solids, Spot, Wall, World, WorldObject
+
+from ..lang.definitions.prop import PropSpot
+from ..lang.definitions.set import (
+    WALL_THICKNESS,
+    Opening,
+    Placed,
+    PropCatalog,
+    Room,
+    SetDef,
+    call_arguments,
+    find_prop,
+)
+from ..lang.diagnostics import Report
+from .light import glass_tint, make_light
+from .props import BuiltProp, build_prop, placement
+from .standing import clear_spot
+from .walls import (
+    Cut,
+    Stretch,
+    cut_of,
+    find_stretch,
+    floor_mesh,
+    skirting,
+    stretches,
+    wall_line,
+    wall_mesh,
+    wall_pieces,
+)
+
+Matrix = NDArray[np.float64]
+#: A prop put against a wall stands off it by this much, so that it does not sink into the skirting.
+OFF_WALL = 0.016
+#: The earth around an outdoor set reaches this far beyond it, metres.
+GROUND_REACH = 60.0
+
+
+def build_world(
+    definition: SetDef, catalog: PropCatalog, time: str = "", room: tuple[str, ...] = ()
+) -> World:
+    """The whole set; ``room`` only says from where it is seen, for the light."""
+    builder = _Builder(definition, catalog)
+    builder.build()
+    return builder.world(time or definition.time, room)
+
+
+@dataclass
+class _Solid:
+    centre: tuple[float, float, float]
+    half: tuple[float, float, float]
+    yaw: float
+    wall: int
+    object: int
+
+
+@dataclass
+class _Builder:
+    """Collects the pieces of one world."""
+
+    definition: SetDef
+    catalog: PropCatalog
+    report: Report = field(default_factory=Report)
+    objects: list[WorldObject] = field(default_factory=list)
+    meshes: list[Mesh] = field(default_factory=list)
+    mesh_object: list[NDArray[np.int32]] = field(default_factory=list)
+    mesh_wall: list[NDArray[np.int32]] = field(default_factory=list)
+    solids: list[_Solid] = field(default_factory=list)
+    floors: list[tuple[float, float, float, float]] = field(default_factory=list)
+    walls: list[Stretch] = field(default_factory=list)
+    parts: int = 0
+
+    # -- the whole ------------------------------------------------------------------
+
+    def build(self) -> None:
+        rooms = self.definition.rooms
+        self.walls = stretches(self.definition)
+        cuts: list[list[Cut]] = [[] for _ in self.walls]
+        room_ids = [self._room(room) for room in rooms]
+        openings = []
+        for room in rooms:
+            for opening in room.openings:
+                index = find_stretch(self.walls, room, opening.wall, opening.at)
+                if index is not None:
+                    cuts[index].append(cut_of(room, opening))
+                    openings.append((room, opening, index))
+        for index, stretch in enumerate(self.walls):
+            self._wall(index, stretch, cuts[index], room_ids)
+        for room, opening, index in openings:
+            self._opening(room, opening, index)
+        for room in rooms:
+            for item in room.placed:
+                self._placed(room, item, (room.name, item.name), None, {})
+        if self.definition.outdoor:
+            self._ground()
+
+    def world(self, time: str, room: tuple[str, ...]) -> World:
+        mesh = _glazed(join(self.meshes), *glass_tint(time, self.definition.outdoor))
+        solids = self._packed_solids()
+        kept = [_with_clear_spots(o, solids, self.floors) for o in self.objects]
+        walls = tuple(Wall(s.point(s.start), s.point(s.end), s.height) for s in self.walls)
+        return World(
+            self.definition.name,
+            mesh,
+            np.concatenate([*self.mesh_object, np.zeros(0, np.int32)]),
+            np.concatenate([*self.mesh_wall, np.zeros(0, np.int32)]),
+            tuple(kept),
+            solids,
+            walls,
+            tuple(self.floors),
+            make_light(self.definition, time, room),
+            self.definition.outdoor,
+        )
+
+    def _packed_solids(self) -> Solids:
+        return Solids(
+            np.array([s.centre for s in self.solids], np.float64).reshape(-1, 3),
+            np.array([s.half for s in self.solids], np.float64).reshape(-1, 3),
+            np.array([s.yaw for s in self.solids], np.float64),
+            np.array([s.wall for s in self.solids], np.int32),
+            np.array([s.object for s in self.solids], np.int32),
+        )
+
+    def _add(self, mesh: Mesh, owner: int, wall: int) -> None:
+        self.meshes.append(mesh)
+        self.mesh_object.append(np.full(len(mesh.faces), owner, np.int32))
+        self.mesh_wall.append(np.full(len(mesh.faces), wall, np.int32))
+
+    def _parts(self, count: int = 1) -> int:
+        """The first of ``count`` new part numbers."""
+        first = self.parts
+        self.parts += count
+        return first
+
+    # -- rooms ----------------------------------------------------------------------
+
+    def _room(self, room: Room) -> int:
+        owner = len(self.objects)
+        (x, y), (w, d, h) = room.at[:2], room.size
+        inset = WALL_THICKNESS / 2 if room.kind == "room" else 0.0
+        matrix = placement(x, y, 0.0, 0.0)
+        spots = tuple(_spot(s, matrix) for s in room.spots)
+        low, high = (x + inset, y + inset, 0.0), (x + w - inset, y + d - inset, max(h, 2.6))
+        self.objects.append(WorldObject(owner, (room.name,), room.kind, spots, low, high, matrix))
+        self._add(floor_mesh(room, self._parts()), owner, -1)
+        self.floors.append((low[0], low[1], high[0], high[1]))
+        return owner
+
+    def _wall(self, index: int, stretch: Stretch, cuts: list[Cut], room_ids: list[int]) -> None:
+        facade = self.definition.facade
+        sides = (stretch.before, stretch.after)
+        colors = tuple(facade if i is None else self.definition.rooms[i].wall_color for i in sides)
+        owners = [room_ids[i] for i in sides if i is not None]
+        first = self._parts(4)
+        mesh = wall_mesh(stretch, cuts, (colors[0], colors[1]), (first, first + 1, first + 2))
+        self._add(mesh, owners[0], index)
+        for side, room in enumerate(sides):
+            if room is None:
+                continue
+            r, i = self.definition.rooms[room], stretch.axis
+            inset = WALL_THICKNESS / 2
+            clip = (r.at[i] + inset, r.at[i] + r.size[i] - inset)
+            self._add(skirting(stretch, cuts, side, clip, first + 3), room_ids[room], index)
+        for low, high, bottom, top in wall_pieces(stretch, cuts):
+            middle = stretch.point((low + high) / 2)
+            along, across = (high - low) / 2, WALL_THICKNESS / 2
+            half = (along, across) if stretch.axis == 0 else (across, along)
+            self.solids.append(
+                _Solid((*middle, (bottom + top) / 2), (*half, (top - bottom) / 2), 0.0, index, owners[0])
+            )
+
+    def _opening(self, room: Room, opening: Opening, index: int) -> None:
+        prop = find_prop(opening.call, self.catalog, self.report)
+        if prop is None:
+            return
+        own = {
+            "width": opening.width,
+            "height": opening.height,
+            "sill": opening.sill,
+            "depth": WALL_THICKNESS,
+            "open": opening.turn,
+        }
+        known = {spec.name for spec in prop.parameters}
+        arguments: dict[str, float | str] = {k: v for k, v in own.items() if k in known}
+        arguments |= call_arguments(opening.call, opening.env, prop, self.report)
+        shape = prop.shape(arguments, self.report)
+        axis, across, start, _ = wall_line(room, opening.wall)
+        stretch = self.walls[index]
+        x, y = stretch.point(start + opening.at)
+        matrix = placement(x, y, 0.0, _TURN[opening.wall])
+        self._object(
+            (room.name, opening.name), opening.kind, shape.spots, (), build_prop(shape), matrix, index, None
+        )
+        if opening.kind != "window" and stretch.before is not None and stretch.after is not None:
+            half = WALL_THICKNESS / 2 + 0.02
+            low, high = start + opening.at - opening.width / 2, start + opening.at + opening.width / 2
+            gap = (low, across - half, high, across + half)
+            self.floors.append(gap if axis == 0 else (gap[1], gap[0], gap[3], gap[2]))
+
+    # -- props ----------------------------------------------------------------------
+
+    def _placed(
+        self,
+        room: Room,
+        item: Placed,
+        path: tuple[str, ...],
+        parent: Matrix | None,
+        parent_spots: dict[str, PropSpot],
+    ) -> None:
+        prop = find_prop(item.call, self.catalog, self.report)
+        if prop is None:
+            return
+        shape = prop.shape(call_arguments(item.call, item.env, prop, self.report), self.report)
+        built = build_prop(shape)
+        wall = -1
+        if parent is not None:
+            rest = parent_spots.get(item.on or "", PropSpot("", (0.0, 0.0, 0.0), None)).at
+            local = placement(rest[0] + item.at[0], rest[1] + item.at[1], rest[2] + item.up, item.turn)
+            matrix = parent @ local
+        elif item.wall is not None:
+            matrix = self._against_wall(room, item, built)
+            if item.up > 0:
+                found = find_stretch(self.walls, room, item.wall, item.at[0])
+                wall = -1 if found is None else found
+        else:
+            matrix = placement(room.at[0] + item.at[0], room.at[1] + item.at[1], item.up, item.turn)
+        self._object(path, prop.name, shape.spots, item.spots, built, matrix, wall, shape.grip)
+        spots = {s.name: s for s in (*reversed(shape.spots), *reversed(item.spots))}
+        for child in item.children:
+            self._placed(room, child, (*path, child.name), matrix, spots)
+
+    def _against_wall(self, room: Room, item: Placed, built: BuiltProp) -> Matrix:
+        """Back to the wall: the prop's +Y side touches it."""
+        assert item.wall is not None
+        axis, across, start, _ = wall_line(room, item.wall)
+        depth = float(built.mesh.vertices[:, 1].max()) if len(built.mesh.vertices) else 0.0
+        inset = (WALL_THICKNESS / 2 if room.kind == "room" else 0.0) + (OFF_WALL if item.up <= 0 else 0.001)
+        inward = -1.0 if item.wall in ("north", "east") else 1.0
+        along, off = start + item.at[0], across + inward * (inset + depth)
+        x, y = (along, off) if axis == 0 else (off, along)
+        return placement(x, y, item.up, _TURN[item.wall] + item.turn)
+
+    def _object(
+        self,
+        path: tuple[str, ...],
+        kind: str,
+        spots: tuple[PropSpot, ...],
+        extra: tuple[PropSpot, ...],
+        built: BuiltProp,
+        matrix: Matrix,
+        wall: int,
+        grip: tuple[float, ...] | None,
+    ) -> None:
+        owner = len(self.objects)
+        mesh = built.mesh
+        first = self._parts(int(mesh.parts.max()) + 1 if len(mesh.parts) else 0)
+        mesh = Mesh(
+            mesh.vertices, mesh.faces, mesh.normals, mesh.colors, mesh.parts + np.int32(first), mesh.materials
+        )
+        placed = mesh.transformed(matrix)
+        low, high = _bounds(placed, matrix)
+        named = [_spot(s, matrix) for s in (*extra, *spots)]
+        if grip is not None:
+            x, y, z = (matrix @ np.array([*grip, 1.0]))[:3].tolist()
+            named.append(Spot("grip", (x, y, z)))
+        self.objects.append(
+            WorldObject(
+                owner,
+                path,
+                kind,
+                tuple(named),
+                low,
+                high,
+                matrix,
+                mesh if grip is not None else None,
+                (grip[0], grip[1], grip[2]) if grip is not None else None,
+            )
+        )
+        if grip is not None:
+            return
+        self._add(placed, owner, wall)
+        yaw = math.atan2(matrix[1, 0], matrix[0, 0])
+        for centre, half in zip(built.centre, built.half, strict=True):
+            x, y, z = (matrix @ np.array([*centre, 1.0]))[:3].tolist()
+            self.solids.append(_Solid((x, y, z), (half[0], half[1], half[2]), yaw, wall, owner))
+
+    def _ground(self) -> None:
+        """Earth all around, a little lower, so that the set does not end in the air."""
+        if not self.floors:
+            return
+        box = np.array(self.floors)
+        x0, y0, x1, y1 = (*(box[:, :2].min(0) - GROUND_REACH), *(box[:, 2:].max(0) + GROUND_REACH))
+        gx, gy = np.meshgrid(np.linspace(x0, x1, 9), np.linspace(y0, y1, 9), indexing="ij")
+        vertices = np.stack([gx.ravel(), gy.ravel(), np.full(gx.size, -0.06)], 1)
+        i, j = np.meshgrid(np.arange(8), np.arange(8), indexing="ij")
+        a = (i * 9 + j).ravel()
+        quads = np.stack([a, a + 9, a + 10, a + 1], 1)
+        faces = np.concatenate([quads[:, [0, 1, 2]], quads[:, [0, 2, 3]]])
+        normals = np.tile([0.0, 0.0, 1.0], (len(vertices), 1))
+        ground = painted(vertices, faces, normals, self.definition.ground, "grass", self._parts())
+        self._add(ground, 0, -1)
+
+
+#: How a prop whose back is at +Y is turned to have it at each wall.
+_TURN = {"north": 0.0, "west": math.pi / 2, "south": math.pi, "east": -math.pi / 2}
+
+
+def _spot(spot: PropSpot, matrix: Matrix) -> Spot:
+    x, y, z = (matrix @ np.array([*spot.at, 1.0]))[:3].tolist()
+    turn = math.atan2(matrix[1, 0], matrix[0, 0])
+    facing = None if spot.facing is None else math.remainder(spot.facing + turn, 2 * math.pi)
+    return Spot(spot.name, (x, y, z), facing)
+
+
+def _bounds(mesh: Mesh, matrix: Matrix) -> tuple[tuple[float, float, float], tuple[float, float, float]]:
+    points = mesh.vertices if len(mesh.vertices) else matrix[:3, 3][None]
+    low, high = points.min(0).tolist(), points.max(0).tolist()
+    return (low[0], low[1], low[2]), (high[0], high[1], high[2])
+
+
+def _with_clear_spots(
+    item: WorldObject, solids: Solids, floors: list[tuple[float, float, float, float]]
+) -> WorldObject:
+    """The object with its `stand` spots moved to free floor nearby, or left out where there is none."""
+    spots = []
+    for spot in item.spots:
+        if spot.name != "stand":
+            spots.append(spot)
+            continue
+        clear = clear_spot(spot, solids, floors)
+        if clear is not None:
+            spots.append(clear)
+    return replace(item, spots=tuple(spots))
+
+
+def _glazed(mesh: Mesh, tint: Colour, share: float) -> Mesh:
+    """Glass takes the colour of the hour."""
+    glass = mesh.materials == MATERIALS.index("glass")
+    if share <= 0 or not glass.any():
+        return mesh
+    colors = mesh.colors.copy()
+    relative = colors[glass].mean(1, keepdims=True) / max(float(colors[glass].mean()), 1e-6)
+    colors[glass] = (1 - share) * colors[glass] + share * np.clip(
+        np.asarray(tint, np.float32) * relative, 0, 1
+    )
+    return Mesh(mesh.vertices, mesh.faces, mesh.normals, colors, mesh.parts, mesh.materials)

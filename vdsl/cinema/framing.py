@@ -1,0 +1,55 @@
+"""Solves where a camera must stand so that two points sit on two lines of its frame."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+def direction(theta: Array, phi: Array) -> Array:
+    """Unit vectors [..., 3] from the subject to the camera: (cos φ sin θ, sin φ sin θ, cos θ)."""
+    return np.stack([np.cos(phi) * np.sin(theta), np.sin(phi) * np.sin(theta), np.cos(theta)], axis=-1)
+
+
+def basis(theta: Array, phi: Array) -> tuple[Array, Array, Array]:
+    """Right, up and backward (towards the camera) [..., 3] of a level camera looking along −direction."""
+    back = direction(theta, phi)
+    right = np.stack([-np.sin(phi), np.cos(phi), np.zeros_like(phi)], axis=-1)
+    return right, np.cross(back, right), back
+
+
+def solve(
+    upper: Array,
+    lower: Array,
+    across: Array,
+    theta: Array,
+    phi: Array,
+    focal: Array,
+    sensor: tuple[float, float],
+    lines: tuple[Array, Array, Array],
+) -> tuple[Array, Array]:
+    """Distance and aim of P cameras.
+
+    upper, lower: [P, 3] points to put on the lines; across: [P, 3] the point to put on a column
+    theta, phi: [P] direction of the camera from its aim; focal: [P] mm; sensor: (width, height) mm
+    lines: (top, bottom, column), [P] each: picture coordinates 0..1, y down
+    returns: r [P] metres and aim [P, 3], so that a camera at ``aim + r·direction`` looking at ``aim``
+        projects ``upper`` to y = top, ``lower`` to y = bottom and ``across`` to x = column, exactly
+
+    With v the height of a point over the optical axis and b how far it lies towards the camera,
+    ``k·v = y·(r − b)`` for each of the points, k = 2f/sensor height: two linear equations in r and in
+    how far the aim moves along the picture's up.
+    """
+    right, up, back = basis(theta, phi)
+    y_top, y_bottom, x = 1.0 - 2.0 * lines[0], 1.0 - 2.0 * lines[1], 2.0 * lines[2] - 1.0
+    ky, kx = 2.0 * focal / sensor[1], 2.0 * focal / sensor[0]
+    drop = lower - upper
+    low_up, low_back = (drop * up).sum(-1), (drop * back).sum(-1)
+    r = (-ky * low_up - y_bottom * low_back) / (y_top - y_bottom)
+    lift = -y_top * r / ky  # of the aim along up, seen from ``upper``
+    side = across - upper
+    shift = (side * right).sum(-1) - x * (r - (side * back).sum(-1)) / kx
+    aim = upper + lift[..., None] * up + shift[..., None] * right
+    return r, aim

@@ -1,0 +1,244 @@
+"""Measures of takes from the geometry: per frame first, then one number a take; P takes of one
+performance at once.
+
+Frames are sampled (ten a take, first and last among them) where sight and space are concerned; motion is
+measured on all. A take that turns or moves onto its subject, or off it, is judged on the part of its
+time in which the subject is meant to be there: the window.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from runtime.world import World
+
+from . import space
+from .framing import Array
+from .sight import backdrop_gaps, clear_lines, clear_of_people, hidden_walls
+from .sizes import PAPER_RADIUS, Size
+from .subject import SIGHT, Subject
+from .track import CameraTrack, camera_axes, project
+
+Bools = NDArray[np.bool_]
+
+SAMPLES = 10
+#: Names of what :func:`measure` returns, each [P].
+MEASURES = (
+    "visibility",  # share of the subject's points in the frame that nothing hides, 0..1
+    "head_visible",  # share of the window in which the eyes are in the frame and not hidden
+    "in_frame",  # share of the window in which head and middle of what is framed are in the frame
+    "size_error",  # |log| of the framed stretch's height against the asked one, at the key frame
+    "size_drift",  # the greatest |log| of the same over the window
+    "headroom",  # height of the frame above the crown, share of the frame, mean over the window
+    "headroom_error",  # the same, off the size's own headroom
+    "lead_room",  # more room ahead of the face than behind: −1..1, 0 where it looks at the camera
+    "thirds_error",  # distance of the eyes from the upper third, share of the frame's height
+    "face",  # cosine between face and direction to the camera: 1 frontal, 0 profile, −1 from behind
+    "clearance",  # metres from the camera to the nearest solid or person, at most 1
+    "speed",  # metres a second, the greatest
+    "angular_speed",  # degrees a second, the greatest
+    "jerk",  # metres a second cubed, root mean square
+    "horizon",  # degrees off the asked roll, the greatest
+    "backdrop_gap",  # share of the picture's width where a wall taken away is missing behind the subject
+    "elevation",  # degrees the camera looks down (positive) at its aim, at the key frame
+)
+
+
+@dataclass(frozen=True, eq=False)
+class Takes:
+    """P takes to measure.
+
+    sizes: of every take; window: bool [P, F] on the sampled frames; key: [P] frame the size is asked at
+    paper: whether sizes are meant as the paper's distances rather than landmarks on lines
+    others: pillars (foot [T, 3], crown [T, 3], radius) of everybody else
+    ignore: object id whose boxes hide nothing (the thing filmed)
+    """
+
+    track: CameraTrack
+    sizes: tuple[Size, ...]
+    window: Bools
+    key: NDArray[np.int64]
+    roll: float
+    paper: bool
+    others: tuple[tuple[Array, Array, float], ...]
+    ignore: int | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Measured:
+    """values: [P] by the names of :data:`MEASURES`; space: what rejection asks for; hidden: [P, W]"""
+
+    values: dict[str, Array]
+    hidden: Bools
+    room: space.Clearance
+    people: Array
+    lowest: Array
+    highest: Array
+
+
+def samples(frames: int) -> NDArray[np.int64]:
+    """Indices of the frames looked at."""
+    return np.unique(np.linspace(0, frames - 1, min(frames, SAMPLES)).round().astype(np.int64))
+
+
+def measure(takes: Takes, subject: Subject, world: World, fps: float) -> Measured:
+    """All measures of all takes of one performance."""
+    track, at = takes.track, samples(subject.frames)
+    camera, rotation = track.position[:, at], track.rotation[:, at]
+    axes = camera_axes(rotation)
+    names = list(subject.landmarks)
+    points = np.stack([subject.landmarks[n][at] for n in names], axis=1)  # [F, K, 3]
+    xy, depth = project(points[None], camera, axes, track.focal[:, at], track.sensor)
+    picture = _Picture(names, xy, depth)
+
+    hidden = _hidden(world, track, at, camera, axes, picture, points[:, names.index("waist")])
+    values, inside = _framing(takes, subject, at, picture)
+    sight_index = [names.index(n) for n in SIGHT]
+    sight = points[:, sight_index]
+    others = [(foot[at], crown[at], radius) for foot, crown, radius in takes.others]
+    seen = clear_lines(world.solids, camera, sight, hidden, takes.ignore) & clear_of_people(
+        camera, sight, others
+    )
+    values |= _visibility(takes, inside[:, :, sight_index], seen)
+    values |= _motion(track, takes.roll, fps)
+    values["face"] = _face(takes, subject, at, camera, points[:, names.index("eyes")])
+    values["elevation"] = np.degrees(-rotation[np.arange(len(camera)), _key_sample(takes, at), 1])
+    values["backdrop_gap"] = _gaps(world, hidden, track, at, camera, axes, points[:, names.index("waist")])
+
+    room = space.clearance(world.solids, camera, hidden)
+    people = space.to_people(camera, others)
+    values["clearance"] = np.minimum(np.minimum(room.object, room.shown), people)
+    return Measured(values, hidden, room, people, camera[..., 2].min(axis=1), camera[..., 2].max(axis=1))
+
+
+@dataclass(frozen=True, eq=False)
+class _Picture:
+    """xy: [P, F, K, 2] picture coordinates of the landmarks; depth: [P, F, K]."""
+
+    names: list[str]
+    xy: Array
+    depth: Array
+
+    def of(self, name: str) -> Array:
+        return np.asarray(self.xy[:, :, self.names.index(name)])
+
+
+def _mean(values: Array | Bools, window: Bools) -> Array:
+    """Mean over the window's frames: [P, F] -> [P]."""
+    return np.asarray((values * window).sum(axis=1) / np.maximum(window.sum(axis=1), 1))
+
+
+def _key_sample(takes: Takes, at: NDArray[np.int64]) -> NDArray[np.int64]:
+    return np.asarray(np.abs(at[None] - takes.key[:, None]).argmin(axis=1))
+
+
+def _framing(
+    takes: Takes, subject: Subject, at: NDArray[np.int64], picture: _Picture
+) -> tuple[dict[str, Array], Bools]:
+    """Measures of where the landmarks are in the picture, and which are inside it [P, F, K]."""
+    xy, window = picture.xy, takes.window
+    inside = (picture.depth > 0.05) & (xy > 0.0).all(-1) & (xy < 1.0).all(-1)
+    rows = np.arange(len(xy))
+    upper = np.array([picture.names.index(s.upper) for s in takes.sizes])
+    lower = np.array([picture.names.index(s.lower) for s in takes.sizes])
+    top = np.array([s.top for s in takes.sizes])
+    eyes = picture.of("eyes")
+    wide = np.array([s.lower in ("feet", "knees") for s in takes.sizes])
+    core = np.where(wide, picture.names.index("waist"), picture.names.index("chin"))
+    heads = inside[:, :, picture.names.index("eyes")]
+    both = heads & inside[rows, :, core]
+    stretch = np.maximum(xy[rows, :, lower, 1] - xy[rows, :, upper, 1], 1e-4)
+    if takes.paper:
+        asked = np.array([PAPER_RADIUS[s.name] for s in takes.sizes])
+        depth = picture.depth[:, :, picture.names.index("pocket")]
+        view = np.maximum(depth, 0.01) * takes.track.sensor[1] / takes.track.focal[:, at] / subject.height
+        error = np.abs(np.log(view / asked[:, None]))
+    else:
+        error = np.abs(np.log(stretch / np.array([s.share for s in takes.sizes])[:, None]))
+    crown = xy[rows, :, upper, 1]
+    return {
+        "in_frame": _mean(both, window),
+        "size_error": error[rows, _key_sample(takes, at)],
+        "size_drift": np.where(window, error, 0.0).max(axis=1),
+        "headroom": np.clip(_mean(crown, window), -1.0, 2.0),
+        "headroom_error": np.minimum(_mean(np.abs(crown - top[:, None]), window), 2.0),
+        "thirds_error": np.minimum(_mean(np.abs(eyes[..., 1] - 1 / 3), window), 2.0),
+        "lead_room": _lead(takes, subject, at, eyes[..., 0]),
+    }, inside
+
+
+def _lead(takes: Takes, subject: Subject, at: NDArray[np.int64], x: Array) -> Array:
+    yaw = takes.track.rotation[:, at, 2]
+    sideways = subject.face[None, at, 0] * np.sin(yaw) - subject.face[None, at, 1] * np.cos(yaw)
+    return np.clip(_mean(sideways * (1.0 - 2.0 * x), takes.window), -1.0, 1.0)
+
+
+def _visibility(takes: Takes, inside: Bools, seen: Bools) -> dict[str, Array]:
+    window = takes.window[:, :, None]
+    shown = (inside & window).sum(axis=(1, 2))
+    clear = (inside & seen & window).sum(axis=(1, 2))
+    head = (inside[:, :, 0] & seen[:, :, 0] & takes.window).sum(axis=1) / np.maximum(
+        takes.window.sum(axis=1), 1
+    )
+    return {"visibility": clear / np.maximum(shown, 1), "head_visible": head}
+
+
+def _face(takes: Takes, subject: Subject, at: NDArray[np.int64], camera: Array, eyes: Array) -> Array:
+    to_camera = camera - eyes[None]
+    to_camera = to_camera / np.maximum(np.linalg.norm(to_camera, axis=-1, keepdims=True), 1e-9)
+    return _mean((to_camera * subject.face[None, at]).sum(-1), takes.window)
+
+
+def _motion(track: CameraTrack, roll: float, fps: float) -> dict[str, Array]:
+    frames = track.position.shape[1]
+    zero = np.zeros(len(track.position))
+    step = np.diff(track.position, axis=1) * fps
+    turn = np.degrees(np.diff(track.rotation, axis=1)) * fps
+    pitch = track.rotation[:, :-1, 1]
+    speed = np.linalg.norm(step, axis=-1)
+    angular = np.sqrt(turn[..., 1] ** 2 + (turn[..., 2] * np.cos(pitch)) ** 2)
+    jerk = np.diff(track.position, n=3, axis=1) * fps**3 if frames > 3 else np.zeros((len(zero), 1, 3))
+    return {
+        "speed": speed.max(axis=1) if frames > 1 else zero,
+        "angular_speed": angular.max(axis=1) if frames > 1 else zero,
+        "jerk": np.sqrt((jerk**2).sum(-1).mean(axis=1)),
+        "horizon": np.degrees(np.abs(track.rotation[..., 0] - roll).max(axis=1)),
+    }
+
+
+def _columns(track: CameraTrack, at: NDArray[np.int64], axes: Array) -> Array:
+    """Floor-plan directions [P, F, 5, 2] of five columns across the frame, per metre of depth."""
+    half = track.sensor[0] / (2 * track.focal[:, at])
+    x = np.linspace(-1.0, 1.0, 5)
+    return axes[:, :, None, 2, :2] + (half[..., None] * x)[..., None] * axes[:, :, None, 0, :2]
+
+
+def _hidden(
+    world: World,
+    track: CameraTrack,
+    at: NDArray[np.int64],
+    camera: Array,
+    axes: Array,
+    picture: _Picture,
+    heart: Array,
+) -> Bools:
+    depth = np.maximum(picture.depth[:, :, picture.names.index("waist")], 0.1)
+    corners = camera[:, :, None, :2] + depth[..., None, None] * _columns(track, at, axes)
+    return hidden_walls(world, camera, heart, corners)
+
+
+def _gaps(
+    world: World,
+    hidden: Bools,
+    track: CameraTrack,
+    at: NDArray[np.int64],
+    camera: Array,
+    axes: Array,
+    heart: Array,
+) -> Array:
+    rays = _columns(track, at, axes)
+    length = np.maximum(np.linalg.norm(rays, axis=-1, keepdims=True), 1e-9)
+    return backdrop_gaps(world, hidden, camera, heart, rays / length)

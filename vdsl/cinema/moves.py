@@ -1,0 +1,215 @@
+"""The nine movements of the paper (section 3.2, Shot Movement), for P cameras over T frames at once.
+
+Every function takes the path the camera holds on to (the paper's p, [T, 3]) and the drawn variables, and
+returns where the cameras are, what they look at, and their focal lengths. ``p̂ = p + offset`` is the point
+looked at; ``dir(θ, φ) = (cos φ sin θ, sin φ sin θ, cos θ)``; ``w = w_λ(t/(T − 1))``. No camera goes lower
+than :data:`FLOOR_CLEARANCE`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .easing import clock, ease
+from .framing import basis, direction
+from .track import CameraTrack, look_at_rotation
+
+Array = NDArray[np.float64]
+Path3 = tuple[Array, Array, Array]
+
+FLOOR_CLEARANCE = 0.15  # lowest height of a camera over the floor, metres
+
+
+@dataclass(frozen=True, eq=False)
+class Draw:
+    """The variables of P cameras of one movement; all [P] unless said.
+
+    r: metres at the first frame; theta, phi: radians at the first frame; focal: mm at the first frame
+    offset: [P, 3], from the path to the point looked at
+    lam: λ; mu: μ of push, pull and zoom; turn: radians turned by tilt, pan and arc, positive;
+    travel: metres along a dolly or pedestal, positive
+    before: share of a dolly's or pedestal's way that lies before the framed position (1: ends on it)
+    key: 0 where the framing is of the first frame, 1 where of the last
+    on: True where a tilt or pan ends on the subject
+    """
+
+    r: Array
+    theta: Array
+    phi: Array
+    focal: Array
+    offset: Array
+    lam: Array
+    mu: Array
+    turn: Array
+    travel: Array
+    before: Array
+    key: NDArray[np.int64]
+    on: NDArray[np.bool_]
+
+
+#: +1 or −1 for the directions: pan left, tilt up, dolly right, pedestal up and arc right are positive.
+SIGN = {
+    "tilt-up": 1.0,
+    "tilt-down": -1.0,
+    "pan-left": 1.0,
+    "pan-right": -1.0,
+    "dolly-left": -1.0,
+    "dolly-right": 1.0,
+    "pedestal-up": 1.0,
+    "pedestal-down": -1.0,
+    "arc-left": -1.0,
+    "arc-right": 1.0,
+}
+
+
+def _weights(path: Array, draw: Draw) -> Array:
+    """w_λ(t/(T − 1)), [P, T]."""
+    return ease(clock(len(path))[None, :], draw.lam[:, None])
+
+
+def _at(path: Array, time: Array) -> Array:
+    """Points of the path at times 0..1, between frames linearly: [P, T] -> [P, T, 3]."""
+    index = np.arange(len(path), dtype=float)
+    where = time * (len(path) - 1)
+    return np.stack([np.interp(where, index, path[:, k]) for k in range(3)], axis=-1)
+
+
+def _lifted(position: Array) -> Array:
+    """Positions kept off the floor."""
+    if position[..., 2].min(initial=np.inf) >= FLOOR_CLEARANCE:
+        return position
+    out = position.copy()
+    np.maximum(out[..., 2], FLOOR_CLEARANCE, out=out[..., 2])
+    return out
+
+
+def _hold(values: Array, frames: int) -> Array:
+    """[P, …] repeated over T frames: [P, T, …]."""
+    return np.repeat(values[:, None], frames, axis=1)
+
+
+def _framed(path: Array, draw: Draw) -> tuple[Array, Array]:
+    """Camera and aim [P, 3] of the framing at the key frame."""
+    aim = path[np.where(draw.key == 1, len(path) - 1, 0)] + draw.offset
+    return _lifted(aim + draw.r[:, None] * direction(draw.theta, draw.phi)), aim
+
+
+def static(path: Array, draw: Draw, sign: float) -> Path3:
+    """Constant, framed on the subject's first or last position."""
+    camera, aim = _framed(path, draw)
+    n = len(path)
+    return _hold(camera, n), _hold(aim, n), _hold(draw.focal, n)
+
+
+def follow(path: Array, draw: Draw, sign: float) -> Path3:
+    """``p̂(w) + r·dir``, looking at p̂(t)."""
+    offset = draw.offset[:, None]
+    arm = (draw.r[:, None] * direction(draw.theta, draw.phi))[:, None]
+    camera = _lifted(_at(path, _weights(path, draw)) + offset + arm)
+    return camera, path[None] + offset, _hold(draw.focal, len(path))
+
+
+def push_pull(path: Array, draw: Draw, sign: float) -> Path3:
+    """``r^t = ((μ − 1) w + 1) r^0`` around p̂(t)."""
+    reach = ((draw.mu[:, None] - 1.0) * _weights(path, draw) + 1.0) * draw.r[:, None]
+    aim = path[None] + draw.offset[:, None]
+    camera = _lifted(aim + reach[..., None] * direction(draw.theta, draw.phi)[:, None])
+    return camera, aim, _hold(draw.focal, len(path))
+
+
+def zoom(path: Array, draw: Draw, sign: float) -> Path3:
+    """Stands where the first frame is framed; ``f^t = f^0 / ((μ − 1) w + 1)``; looks at p̂(t)."""
+    camera = _lifted(path[0] + draw.offset + draw.r[:, None] * direction(draw.theta, draw.phi))
+    focal = draw.focal[:, None] / ((draw.mu[:, None] - 1.0) * _weights(path, draw) + 1.0)
+    return _hold(camera, len(path)), path[None] + draw.offset[:, None], focal
+
+
+def _turned(path: Array, draw: Draw, sign: float, horizontal: bool) -> Path3:
+    camera, aim = _framed(path, draw)
+    level = look_at_rotation(camera, aim)
+    w = _weights(path, draw)
+    angle = sign * draw.turn[:, None] * np.where(draw.on[:, None], w - 1.0, w)
+    pitch = level[:, None, 1] + (0.0 if horizontal else angle)
+    yaw = level[:, None, 2] + (angle if horizontal else 0.0)
+    ahead = np.stack(
+        np.broadcast_arrays(np.cos(pitch) * np.cos(yaw), np.cos(pitch) * np.sin(yaw), np.sin(pitch)), -1
+    )
+    position = _hold(camera, len(path))
+    reach = np.linalg.norm(aim - camera, axis=-1)
+    return position, position + reach[:, None, None] * ahead, _hold(draw.focal, len(path))
+
+
+def tilt(path: Array, draw: Draw, sign: float) -> Path3:
+    """Pitch turns by ±turn·(w − 1) towards the subject, or ±turn·w away from it."""
+    return _turned(path, draw, sign, horizontal=False)
+
+
+def pan(path: Array, draw: Draw, sign: float) -> Path3:
+    """Yaw turns by ±turn·(w − 1) towards the subject, or ±turn·w away from it."""
+    return _turned(path, draw, sign, horizontal=True)
+
+
+def _carried(path: Array, draw: Draw, axis: Array) -> Path3:
+    """From ``K − before·travel·axis`` to ``K + (1 − before)·travel·axis``, with a fixed direction."""
+    camera, aim = _framed(path, draw)
+    way = draw.travel[:, None] * axis
+    start = _lifted(camera - draw.before[:, None] * way)
+    end = _lifted(camera + (1.0 - draw.before[:, None]) * way)
+    position = start[:, None] + _weights(path, draw)[..., None] * (end - start)[:, None]
+    return position, position + (aim - camera)[:, None], _hold(draw.focal, len(path))
+
+
+def dolly(path: Array, draw: Draw, sign: float) -> Path3:
+    """Horizontal, along the picture's right."""
+    return _carried(path, draw, sign * basis(draw.theta, draw.phi)[0])
+
+
+def pedestal(path: Array, draw: Draw, sign: float) -> Path3:
+    """Vertical."""
+    return _carried(path, draw, np.tile((0.0, 0.0, sign), (len(draw.r), 1)))
+
+
+def arc(path: Array, draw: Draw, sign: float) -> Path3:
+    """``φ^t = φ^0 ± turn·w`` around p̂(t)."""
+    phi = draw.phi[:, None] + sign * draw.turn[:, None] * _weights(path, draw)
+    theta = np.broadcast_to(draw.theta[:, None], phi.shape)
+    aim = path[None] + draw.offset[:, None]
+    return _lifted(aim + draw.r[:, None, None] * direction(theta, phi)), aim, _hold(draw.focal, len(path))
+
+
+#: The function of each family.
+MOVES: dict[str, Callable[[Array, Draw, float], Path3]] = {
+    "static": static,
+    "follow": follow,
+    "push": push_pull,
+    "pull": push_pull,
+    "zoom": zoom,
+    "tilt": tilt,
+    "pan": pan,
+    "dolly": dolly,
+    "pedestal": pedestal,
+    "arc": arc,
+}
+
+
+def family(movement: str) -> str:
+    """``pan`` for ``pan-left``: the key of :data:`MOVES`."""
+    return movement.split("-")[0]
+
+
+def track_of(
+    movement: str, path: Array, draw: Draw, sensor: tuple[float, float], roll: float = 0.0
+) -> CameraTrack:
+    """The tracks [P, T, …] of one movement; the horizon is level but for ``roll`` radians.
+
+    Yaw runs on without jumps of a full turn.
+    """
+    position, look_at, focal = MOVES[family(movement)](path, draw, SIGN.get(movement, 1.0))
+    look_at = np.broadcast_to(look_at, position.shape).copy()
+    rotation = look_at_rotation(position, look_at, roll)
+    rotation[..., 2] = np.unwrap(rotation[..., 2], axis=-1)
+    return CameraTrack(position, rotation, focal, look_at, sensor)

@@ -1,0 +1,50 @@
+"""One number for how well a take is composed and shot, from its measures alone."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+from numpy.typing import NDArray
+
+#: What counts, and how much; the weights sum to one.
+WEIGHTS = {
+    "visibility": 0.20,
+    "in_frame": 0.18,
+    "face": 0.16,
+    "size": 0.10,
+    "headroom": 0.08,
+    "lead_room": 0.06,
+    "thirds": 0.06,
+    "clearance": 0.06,
+    "steadiness": 0.10,
+}
+
+
+def parts(measures: Mapping[str, NDArray[np.float64] | float]) -> dict[str, NDArray[np.float64]]:
+    """Every part of the score in 0..1, best 1 (see docs/cinema.md)."""
+    m = {k: np.asarray(v, float) for k, v in measures.items()}
+    calm = np.exp(-((m["angular_speed"] / 70.0) ** 2)) * np.exp(-((m["speed"] / 3.0) ** 2))
+    return {
+        "visibility": m["visibility"] * (0.5 + 0.5 * m["head_visible"]),
+        "in_frame": m["in_frame"],
+        # three-quarter to frontal is best; from straight behind is worst
+        "face": np.clip((m["face"] + 0.75) / 1.45, 0.0, 1.0),
+        "size": np.exp(-((m["size_drift"] / 0.7) ** 2)),
+        "headroom": np.exp(-((m["headroom_error"] / 0.12) ** 2)),
+        "lead_room": np.clip(0.7 + 1.5 * m["lead_room"], 0.0, 1.0),
+        "thirds": np.exp(-((m["thirds_error"] / 0.2) ** 2)),
+        "clearance": np.clip(m["clearance"] / 0.8, 0.0, 1.0),
+        "steadiness": calm * np.exp(-m["jerk"] / 60.0),
+    }
+
+
+def geometry_scores(measures: Mapping[str, NDArray[np.float64] | float]) -> NDArray[np.float64]:
+    """Scores 0..1 of takes whose measures are arrays [P]."""
+    total = sum(WEIGHTS[name] * value for name, value in parts(measures).items())
+    return np.asarray(total * (1.0 - 0.5 * np.asarray(measures["backdrop_gap"], float)))
+
+
+def geometry_score(measures: Mapping[str, float]) -> float:
+    """Score 0..1 of one take, what ``--rank geometry`` orders by."""
+    return float(geometry_scores(measures))

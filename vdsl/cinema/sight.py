@@ -1,0 +1,159 @@
+"""What stands between cameras and what they film, over upright boxes; vectorised over P cameras.
+
+Walls are wild: one that stands between camera and subject, or behind which the camera stands, is taken
+away for the whole take.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from runtime.world import Solids, World
+
+Array = NDArray[np.float64]
+Bools = NDArray[np.bool_]
+
+_TOUCH = 0.14  # metres before a landmark at which a box no longer hides it (the chair one sits on)
+
+
+def hidden_walls(world: World, camera: Array, subject: Array, corners: Array) -> Bools:
+    """Wild walls not drawn in each take.
+
+    camera: [P, F, 3]; subject: [F, 3]; corners: [P, F, C, 2], floor-plan points across the frame at the
+    subject's depth
+    returns: bool [P, W]. A wall is hidden when at any frame it separates camera from subject and one
+    of the lines from the camera to the subject or the frame's corners crosses it.
+    """
+    if not world.walls:
+        return np.zeros((len(camera), 0), bool)
+    low = np.array([w.low for w in world.walls])
+    high = np.array([w.high for w in world.walls])
+    along = high - low
+    eye = camera[..., None, :2]
+    heart = np.broadcast_to(subject[None, :, None, :2], (*camera.shape[:2], 1, 2))
+    targets = np.concatenate([heart, corners], axis=2)
+
+    def side(points: Array) -> Array:
+        d = points[..., None, :] - low
+        return along[:, 0] * d[..., 1] - along[:, 1] * d[..., 0]
+
+    eye_side, target_side = side(eye), side(targets)  # [P, F, 1, W], [P, F, C + 1, W]
+    apart = (eye_side[:, :, 0] > 0) != (target_side[:, :, 0] > 0)
+    ray = targets - eye
+    to_low, to_high = low - eye[..., None, :], high - eye[..., None, :]
+    a = ray[..., None, 0] * to_low[..., 1] - ray[..., None, 1] * to_low[..., 0]
+    b = ray[..., None, 0] * to_high[..., 1] - ray[..., None, 1] * to_high[..., 0]
+    crossing = ((a > 0) != (b > 0)) & ((eye_side > 0) != (target_side > 0))
+    return np.asarray((crossing.any(axis=2) & apart).any(axis=1))
+
+
+def backdrop_gaps(world: World, hidden: Bools, camera: Array, subject: Array, rays: Array) -> Array:
+    """Share [P] of looks across the frame that would meet a hidden wall behind the subject.
+
+    rays: [P, F, C, 2] unit floor-plan directions
+    """
+    if not world.walls or not hidden.any():
+        return np.zeros(len(camera))
+    low = np.array([w.low for w in world.walls])
+    along = np.array([w.high for w in world.walls]) - low
+    d = low - camera[:, :, None, None, :2]
+    denominator = rays[..., None, 0] * along[:, 1] - rays[..., None, 1] * along[:, 0]
+    safe = np.where(np.abs(denominator) < 1e-9, 1e-9, denominator)
+    t = (d[..., 0] * along[:, 1] - d[..., 1] * along[:, 0]) / safe
+    s = (d[..., 0] * rays[..., None, 1] - d[..., 1] * rays[..., None, 0]) / safe
+    reach = np.linalg.norm(camera[..., :2] - subject[None, :, :2], axis=-1)[:, :, None, None]
+    behind = (t > reach) & (s >= 0) & (s <= 1) & hidden[:, None, None, :]
+    return np.asarray(behind.any(axis=3).mean(axis=(1, 2)))
+
+
+def distances(solids: Solids, points: Array) -> Array:
+    """Distance [N, B] from points [N, 3] to every box, negative inside."""
+    d = points[:, None, :] - solids.centre
+    c, s = np.cos(solids.yaw), np.sin(solids.yaw)
+    local = np.stack([c * d[..., 0] + s * d[..., 1], c * d[..., 1] - s * d[..., 0], d[..., 2]], axis=-1)
+    q = np.abs(local) - solids.half
+    outside = np.linalg.norm(np.maximum(q, 0.0), axis=-1)
+    return np.asarray(outside + np.minimum(q.max(axis=-1), 0.0))
+
+
+def clear_lines(
+    solids: Solids, camera: Array, points: Array, hidden: Bools, ignore: int | None = None
+) -> Bools:
+    """Whether each point can be seen.
+
+    camera: [P, F, 3]; points: [F, K, 3]; hidden: [P, W] walls taken away; ignore: id of an object whose
+    boxes do not count (the thing filmed)
+    returns: bool [P, F, K]
+    """
+    P, F = camera.shape[:2]
+    K = points.shape[1]
+    boxes = np.arange(len(solids.centre))
+    if ignore is not None:
+        boxes = boxes[solids.object != ignore]
+    if not len(boxes):
+        return np.ones((P, F, K), bool)
+    near = _near(solids, boxes, camera, points)  # [P, F, B]
+    wall = solids.wall[boxes]
+    if hidden.shape[1]:
+        near &= ~np.where(wall >= 0, hidden[:, np.maximum(wall, 0)], False)[:, None, :]
+    p, f, b = np.nonzero(near)
+    blocked = _cut(solids, boxes[b], camera[p, f], points[f])  # [M, K]
+    seen = np.ones((P * F, K), bool)
+    m, k = np.nonzero(blocked)
+    seen[p[m] * F + f[m], k] = False
+    return seen.reshape(P, F, K)
+
+
+def _near(solids: Solids, boxes: NDArray[np.int64], camera: Array, points: Array) -> Bools:
+    """Boxes whose bounding sphere comes close to the line from camera to the middle of the points."""
+    middle = points.mean(axis=1)
+    spread = np.linalg.norm(points - middle[:, None], axis=-1).max(axis=1)
+    ray = (middle[None] - camera).astype(np.float32)
+    square = np.maximum((ray**2).sum(-1), 1e-9)
+    start = (solids.centre[boxes] - camera[:, :, None]).astype(np.float32)
+    t = np.clip(np.einsum("pfbk,pfk->pfb", start, ray) / square[..., None], 0.0, 1.0)
+    away = np.linalg.norm(start - t[..., None] * ray[:, :, None], axis=-1)
+    radius = np.linalg.norm(solids.half[boxes], axis=1)
+    return np.asarray(away < radius + spread[None, :, None])
+
+
+def _cut(solids: Solids, box: NDArray[np.int64], camera: Array, points: Array) -> Bools:
+    """Whether box m cuts the lines from camera m to its points: [M, 3], [M, K, 3] -> [M, K]."""
+    c, s = np.cos(solids.yaw[box]), np.sin(solids.yaw[box])
+
+    def turned(v: Array, extra: int) -> Array:
+        cc, ss = (c[:, None], s[:, None]) if extra else (c, s)
+        return np.stack(
+            [cc * v[..., 0] + ss * v[..., 1], cc * v[..., 1] - ss * v[..., 0], v[..., 2]], axis=-1
+        )
+
+    origin = turned(camera - solids.centre[box], 0)[:, None]
+    end = turned(points - solids.centre[box][:, None], 1)
+    half = solids.half[box][:, None]
+    ray = end - origin
+    safe = np.where(np.abs(ray) < 1e-9, 1e-9, ray)
+    t1, t2 = (-half - origin) / safe, (half - origin) / safe
+    enter = np.minimum(t1, t2).max(axis=-1)
+    leave = np.maximum(t1, t2).min(axis=-1)
+    stop = 1.0 - _TOUCH / np.maximum(np.linalg.norm(ray, axis=-1), 2 * _TOUCH)
+    within = (np.abs(end) <= half + 0.05).all(axis=-1)
+    return np.asarray((enter < np.minimum(leave, stop)) & (leave > 0.0) & ~within)
+
+
+def clear_of_people(camera: Array, points: Array, bodies: list[tuple[Array, Array, float]]) -> Bools:
+    """Whether lines pass everybody else: bodies are (foot [F, 3], crown [F, 3], radius) pillars.
+
+    camera: [P, F, 3]; points: [F, K, 3] -> bool [P, F, K]
+    """
+    seen = np.ones((*camera.shape[:2], points.shape[1]), bool)
+    for foot, crown, radius in bodies:
+        eye = camera[:, :, None, :2]
+        ray = points[None, :, :, :2] - eye
+        start = foot[None, :, None, :2] - eye
+        square = np.maximum((ray**2).sum(-1), 1e-9)
+        t = np.clip((start * ray).sum(-1) / square, 0.0, 1.0)
+        away = np.linalg.norm(start - t[..., None] * ray, axis=-1)
+        height = camera[:, :, None, 2] + t * (points[None, :, :, 2] - camera[:, :, None, 2])
+        seen &= ~((away < radius) & (height < crown[None, :, None, 2]) & (t < 0.97))
+    return seen

@@ -1,0 +1,152 @@
+"""What a camera is about: a person, a thing or a place, as points over time.
+
+Assumes a performance on the shared skeleton. Guarantees the same set of landmarks for every kind of
+subject, so that framing and measuring need not ask which it is.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.ndimage import gaussian_filter1d
+
+from runtime.body.skeleton import JOINT, Skeleton
+
+#: Points whose sight makes a subject visible, most telling first.
+SIGHT = ("eyes", "chin", "pocket", "waist", "hand_l", "hand_r", "knees")
+
+
+@dataclass(frozen=True, eq=False)
+class Subject:
+    """A subject over T frames.
+
+    kind: ``person``, ``thing`` or ``place``; height: standing height of a person, metres
+    position: float64 [T, 3], point on the floor below it (the paper's p); heading: float64 [T], radians
+    landmarks: by name, float64 [T, 3]: crown, hairline, brow, eyes, nose, chin, collar, pocket, waist,
+        thigh, knees, feet, hand_l, hand_r
+    face: float64 [T, 3], unit direction the face points; zero for what has none
+    """
+
+    name: str
+    kind: str
+    height: float
+    position: NDArray[np.float64]
+    heading: NDArray[np.float64]
+    landmarks: dict[str, NDArray[np.float64]]
+    face: NDArray[np.float64]
+
+    @property
+    def frames(self) -> int:
+        return len(self.position)
+
+    def travel(self) -> float:
+        """Metres from where it starts to the farthest it gets from there on the floor."""
+        return float(np.linalg.norm(self.position[:, :2] - self.position[0, :2], axis=1).max())
+
+
+def person(
+    name: str,
+    skeleton: Skeleton,
+    world_from_joint: NDArray[np.floating],
+    position: NDArray[np.float64],
+    heading: NDArray[np.float64],
+) -> Subject:
+    """A performed character; landmarks are points of the bind pose carried by their joints."""
+    world = np.asarray(world_from_joint, np.float64)
+    bind, h = skeleton.bind, skeleton.height
+    eye = bind[JOINT["eye_l"]]
+    head = (h - eye[2]) / 0.525  # chin to crown; the eyes lie a little below its middle
+    chin = h - head
+    skull = bind[JOINT["head"]][0]
+
+    def carried(joint: str, x: float, z: float) -> NDArray[np.float64]:
+        j = JOINT[joint]
+        local = np.array((x, 0.0, z)) - bind[j]
+        local[1] = 0.0
+        return np.asarray(world[:, j, :3, :3] @ local + world[:, j, :3, 3])
+
+    def joints(*names: str) -> NDArray[np.float64]:
+        return np.asarray(world[:, [JOINT[n] for n in names], :3, 3].mean(axis=1))
+
+    soles = world[:, [JOINT[n] for n in ("foot_l", "foot_r", "toe_l", "toe_r")], :3, 3]
+    feet = soles.mean(axis=1)
+    feet[:, 2] = np.maximum(soles[:, :, 2].min(axis=1) - bind[JOINT["toe_l"]][2], np.asarray(position)[:, 2])
+    landmarks = {
+        "crown": carried("head", skull, h),
+        "hairline": carried("head", eye[0], chin + 0.86 * head),
+        "brow": carried("head", eye[0], chin + 0.60 * head),
+        "eyes": joints("eye_l", "eye_r"),
+        "nose": carried("head", eye[0], chin + 0.28 * head),
+        "chin": carried("head", eye[0], chin),
+        "collar": carried("chest", bind[JOINT["neck"]][0], chin - 0.065 * h),
+        "pocket": carried("chest", bind[JOINT["chest"]][0], 0.715 * h),
+        "waist": carried("spine", bind[JOINT["spine"]][0], 0.60 * h),
+        "thigh": joints("thigh_l", "thigh_r", "shin_l", "shin_r"),
+        "knees": joints("shin_l", "shin_r"),
+        "feet": feet,
+        "hand_l": joints("hand_l"),
+        "hand_r": joints("hand_r"),
+    }
+    face = world[:, JOINT["head"], :3, 0]
+    return Subject(
+        name, "person", h, np.asarray(position, float), np.asarray(heading, float), landmarks, face.copy()
+    )
+
+
+def thing(name: str, low: NDArray[np.float64], high: NDArray[np.float64], facing: float = 0.0) -> Subject:
+    """An object by its bounds over time; low, high: float64 [T, 3]."""
+    centre, size = (low + high) / 2, high - low
+    tall = np.maximum(np.maximum(size[:, 2], np.linalg.norm(size[:, :2], axis=1) / 1.5), 0.12)
+    return _box(name, "thing", centre, tall, np.full(len(low), facing))
+
+
+def place(name: str, low: tuple[float, ...], high: tuple[float, ...], frames: int) -> Subject:
+    """A room or area as a whole, by its bounds on the floor plan."""
+    span = float(np.hypot(high[0] - low[0], high[1] - low[1]))
+    tall = float(np.clip(0.42 * span, 1.8, 5.0))
+    centre = np.tile(((low[0] + high[0]) / 2, (low[1] + high[1]) / 2, low[2] + 1.05), (frames, 1))
+    return _box(name, "place", centre, np.full(frames, tall), np.zeros(frames))
+
+
+def _box(
+    name: str,
+    kind: str,
+    centre: NDArray[np.float64],
+    tall: NDArray[np.float64],
+    heading: NDArray[np.float64],
+) -> Subject:
+    """A faceless subject: landmarks spread evenly from ``crown`` to ``feet``."""
+
+    def at(share: float) -> NDArray[np.float64]:
+        out = centre.copy()
+        out[:, 2] += share * tall
+        return out
+
+    share = {"crown": 0.5, "hairline": 0.4, "brow": 0.2, "eyes": 0.0, "nose": 0.0, "chin": 0.0, "collar": 0.0}
+    share |= {"pocket": 0.0, "waist": 0.0, "thigh": -0.1, "knees": 0.0, "feet": -0.5, "hand_l": 0.0}
+    share["hand_r"] = 0.0
+    position = centre.copy()
+    position[:, 2] = 0.0
+    return Subject(
+        name,
+        kind,
+        float(tall[0]),
+        position,
+        heading,
+        {n: at(s) for n, s in share.items()},
+        np.zeros_like(centre),
+    )
+
+
+def anchor(subject: Subject, upper: str, lower: str, fps: float) -> NDArray[np.float64]:
+    """The path [T, 3] a camera of ``rig cinema`` holds on to: midway between two landmarks, smoothed.
+
+    Steps and breaths (anything faster than about half a second) are taken out, so a camera that keeps
+    its distance does not bob; sitting down and walking off stay in.
+    """
+    middle = (subject.landmarks[upper] + subject.landmarks[lower]) / 2
+    sway = (subject.landmarks["eyes"] + subject.landmarks["waist"]) / 2
+    path = np.column_stack([sway[:, :2], middle[:, 2]])
+    return np.asarray(gaussian_filter1d(path, sigma=max(0.3 * fps, 0.5), axis=0, mode="nearest"))

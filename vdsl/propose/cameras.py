@@ -1,0 +1,253 @@
+"""Camera proposals: the subspaces of section 3.2 enumerated into a shot's budget, and what is thrown out.
+
+Assumes performed story proposals and the world they play in. Guarantees that what is offered keeps to the
+line's size and angle, stands in free space, sees its subject, and is the same for the same text and seed
+whatever else was proposed before.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from runtime.body.skeleton import JOINT, Skeleton
+from runtime.world import World, WorldObject
+
+from ..cinema import rig_cinema, rig_paper
+from ..cinema.measures import Measured, Takes, measure, samples
+from ..cinema.score import geometry_scores
+from ..cinema.sizes import Size, size_of
+from ..cinema.space import Stage, stage_of
+from ..cinema.subject import Subject, person, place, thing
+from ..cinema.track import CameraTrack
+from ..lang.ir import Shot, Target
+from .drawing import draw, generator
+from .rejection import REASONS, SOFT, reasons
+from .shooting import Shooting, shoot
+from .types import CameraProposal, ProposalGrid, StoryProposal
+
+_ROUNDS = 5
+_FEW = 8  # with fewer takes than this, ones that only look less well are let back in
+_MARGIN = 0.22  # radius of a person in somebody else's way, metres
+
+
+@dataclass(frozen=True, eq=False)
+class Filming:
+    """What cameras need to know of a scene.
+
+    skeletons: of everyone in it; fps: frames a second; rig: cinema or paper; aspect: picture width/height
+    room: path of the room an establishing shot shows, () for the whole set
+    """
+
+    world: World
+    skeletons: Mapping[str, Skeleton]
+    fps: float
+    seed: int
+    rig: str = "cinema"
+    aspect: float = 16 / 9
+    room: tuple[str, ...] = ()
+
+    @property
+    def sensor(self) -> tuple[float, float]:
+        return (rig_paper if self.rig == "paper" else rig_cinema).sensor(self.aspect)
+
+
+@dataclass(frozen=True, eq=False)
+class _Batch:
+    """Candidates of one story, measured: tracks [P], what was drawn, and why each is thrown out."""
+
+    story: int
+    azimuth: NDArray[np.int64]
+    movement: NDArray[np.int64]
+    shooting: Shooting
+    measured: Measured
+    scores: NDArray[np.float64]
+    reason: NDArray[np.int64]
+
+
+def propose_cameras(shot: Shot, stories: Sequence[StoryProposal], filming: Filming) -> ProposalGrid:
+    """S · C proposals of a shot: ``shot.proposals`` of them where free space allows."""
+    subjects = [subject_of(shot, story, filming) for story in stories]
+    name = subjects[0].name if subjects and subjects[0].kind == "person" else None
+    batches: list[_Batch] = []
+    rejected: Counter[str] = Counter()
+    considered, good, wanted = 0, 0, shot.proposals
+    for number in range(_ROUNDS):
+        share = max(good / considered, 0.08) if considered else 0.75
+        count = int(np.clip((wanted - good) / share, 16, 5 * wanted))
+        rng = generator(filming.seed, shot.id, f"cameras {number}")
+        for batch in _consider(shot, stories, subjects, filming, count, rng):
+            batches.append(batch)
+            considered += len(batch.reason)
+            good += int((batch.reason < 0).sum())
+            rejected.update(REASONS[k] for k in batch.reason[batch.reason >= 0])
+        if good >= wanted:
+            break
+    chosen = _choose(batches, wanted)
+    for b, p in chosen:
+        if batches[b].reason[p] >= 0:  # let back in
+            rejected[REASONS[batches[b].reason[p]]] -= 1
+    cameras = tuple(_proposal(i, batches[b], p, shot) for i, (b, p) in enumerate(chosen))
+    counts = {k: v for k, v in sorted(rejected.items()) if v > 0}
+    return ProposalGrid(shot.id, name, tuple(stories), cameras, considered, counts)
+
+
+def subject_of(shot: Shot, story: StoryProposal, filming: Filming) -> Subject:
+    """Whom or what the shot's cameras are about."""
+    focus = shot.focus
+    if focus is None:
+        return _room_subject(filming, story.frames)
+    if focus.kind == "character" and focus.path[-1] in story.performances:
+        acted = story.performances[focus.path[-1]]
+        skeleton = filming.skeletons[focus.path[-1]]
+        return person(focus.path[-1], skeleton, acted.world_from_joint, acted.position, acted.heading)
+    item = find_object(filming.world, focus)
+    return _room_subject(filming, story.frames) if item is None else _thing_subject(item, story)
+
+
+def find_object(world: World, target: Target) -> WorldObject | None:
+    """The object a target names, or the one its spot belongs to: the longest path that matches."""
+    paths = {item.path: item for item in world.objects}
+    for end in range(len(target.path), 0, -1):
+        if target.path[:end] in paths:
+            return paths[target.path[:end]]
+    return None
+
+
+def _room_subject(filming: Filming, frames: int) -> Subject:
+    item = next((o for o in filming.world.objects if o.path == filming.room and filming.room), None)
+    if item is not None:
+        return place(item.path[-1], item.low, item.high, frames)
+    floors = np.array(filming.world.floors or ((-2.0, -2.0, 2.0, 2.0),))
+    low, high = floors[:, :2].min(axis=0), floors[:, 2:].max(axis=0)
+    return place(filming.world.name, (*low.tolist(), 0.0), (*high.tolist(), 2.6), frames)
+
+
+def _thing_subject(item: WorldObject, story: StoryProposal) -> Subject:
+    name = item.path[-1]
+    low, high = (np.tile(corner, (story.frames, 1)) for corner in (item.low, item.high))
+    if item.kind in ("room", "area"):
+        return replace(place(name, item.low, item.high, story.frames), name=name)
+    moved = story.props.get(item.id)
+    if moved is not None:
+        shift = moved[:, :3, 3].astype(float) - item.world_from_object[:3, 3]
+        low, high = low + shift, high + shift
+    stand = item.spot("stand")
+    facing = 0.0 if stand is None or stand.facing is None else stand.facing + np.pi
+    return thing(name, low, high, facing)
+
+
+def _consider(
+    shot: Shot,
+    stories: Sequence[StoryProposal],
+    subjects: Sequence[Subject],
+    filming: Filming,
+    count: int,
+    rng: np.random.Generator,
+) -> list[_Batch]:
+    """Draw, shoot, measure and judge so many candidates."""
+    sample = draw(shot, len(stories), count, rng)
+    out = []
+    for s, subject in enumerate(subjects):
+        rows = np.flatnonzero(sample.story == s)
+        if not len(rows):
+            continue
+        story = stories[s]
+        shooting = shoot(shot, subject, sample, rows, filming.rig, filming.sensor, filming.fps)
+        takes = _takes(shot, subject, shooting, story, filming)
+        measured = measure(takes, subject, filming.world, filming.fps)
+        stage = _stage(filming, subject)
+        reason = reasons(shooting, measured, subject, stage, takes)
+        out.append(
+            _Batch(
+                s,
+                sample.azimuth[rows][shooting.order],
+                sample.movement[rows][shooting.order],
+                shooting,
+                measured,
+                geometry_scores(measured.values),
+                reason,
+            )
+        )
+    return out
+
+
+def _stage(filming: Filming, subject: Subject) -> Stage:
+    return stage_of(filming.world, subject.position[[0, -1]])
+
+
+def _takes(shot: Shot, subject: Subject, shooting: Shooting, story: StoryProposal, filming: Filming) -> Takes:
+    sizes: tuple[Size, ...] = tuple(size_of(subject.kind, s) for s in shooting.scales)
+    ignore = None
+    if subject.kind == "thing" and shot.focus is not None:
+        item = find_object(filming.world, shot.focus)
+        ignore = item.id if item is not None else None
+    others = []
+    for name, acted in story.performances.items():
+        if name != subject.name:
+            joints = acted.world_from_joint
+            crown = joints[:, JOINT["head"], :3, 3].astype(float) + np.array((0.0, 0.0, 0.12))
+            foot = joints[:, JOINT["hips"], :3, 3].astype(float)
+            foot[:, 2] = acted.position[:, 2]
+            others.append((foot, crown, _MARGIN))
+    window = shooting.window(samples(subject.frames), subject.frames)
+    return Takes(
+        shooting.track, sizes, window, shooting.key, shot.roll, filming.rig == "paper", tuple(others), ignore
+    )
+
+
+def _choose(batches: Sequence[_Batch], wanted: int) -> list[tuple[int, int]]:
+    """Up to ``wanted`` candidates as (batch, row): varied first, better ones before worse ones."""
+    reason = np.concatenate([b.reason for b in batches]) if batches else np.zeros(0, int)
+    if not len(reason):
+        return []
+    where = [(i, p) for i, b in enumerate(batches) for p in range(len(b.reason))]
+    scores = np.concatenate([b.scores for b in batches])
+    pool = np.flatnonzero(reason < 0)
+    if len(pool) < min(_FEW, wanted):
+        soft = np.flatnonzero(np.isin(reason, SOFT))
+        soft = soft[np.argsort(-scores[soft], kind="stable")]
+        pool = np.concatenate([pool, soft[: min(_FEW, wanted) - len(pool)]])
+    keys = np.stack(
+        [
+            np.concatenate([b.azimuth for b in batches]),
+            np.concatenate([np.full(len(b.reason), b.story) for b in batches]),
+            np.concatenate([b.movement for b in batches]),
+            np.concatenate([b.shooting.strata for b in batches]),
+        ],
+        axis=1,
+    )[pool]
+    picked: list[int] = []
+    taken = np.zeros(len(pool), bool)
+    counts = [np.zeros(keys[:, k].max() + 1 if len(keys) else 1) for k in range(keys.shape[1])]
+    for _ in range(min(wanted, len(pool))):
+        crowd = sum(c[keys[:, k]] for k, c in enumerate(counts)) - 1.5 * scores[pool]
+        best = int(np.where(taken, np.inf, crowd).argmin())
+        taken[best] = True
+        picked.append(int(pool[best]))
+        for k, c in enumerate(counts):
+            c[keys[best, k]] += 1
+    return sorted(where[i] for i in picked)
+
+
+def _proposal(index: int, batch: _Batch, row: int, shot: Shot) -> CameraProposal:
+    track = batch.shooting.track
+    values = {k: float(v[row]) for k, v in batch.measured.values.items()}
+    values["geometry"] = float(batch.scores[row])
+    return CameraProposal(
+        index=index,
+        story=batch.story,
+        movement=batch.shooting.movements[row],
+        scale=batch.shooting.scales[row],
+        angle=batch.shooting.angles[row],
+        params=batch.shooting.params(row, shot.roll),
+        track=CameraTrack(
+            track.position[row], track.rotation[row], track.focal[row], track.look_at[row], track.sensor
+        ),
+        hidden_walls=batch.measured.hidden[row],
+        measures=values,
+    )

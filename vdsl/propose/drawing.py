@@ -1,0 +1,79 @@
+"""Draws the free variables of cameras: stratified, seeded, independent of the order of execution."""
+
+from __future__ import annotations
+
+import hashlib
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..lang.ir import Shot
+
+AZIMUTHS = 8
+
+
+def generator(seed: int, shot: str, purpose: str) -> np.random.Generator:
+    """The stream of one purpose: the same whatever else has been drawn before."""
+    key = hashlib.sha256(f"{seed}\0{shot}\0{purpose}".encode()).digest()
+    return np.random.default_rng(np.frombuffer(key, np.uint32))
+
+
+@dataclass(frozen=True, eq=False)
+class Sample:
+    """N candidates, every variable spread evenly over its range on its own and shuffled against the others.
+
+    story, movement, scale, angle: int [N] indices into what the shot allows; azimuth: int [N], 0..7
+    lam: λ [N]; key: 0 start or 1 end; on: bool; before: 0, 0.5 or 1
+    the rest [N] in 0..1, to be spread over their ranges: lens, mu, turn, travel, lead, jitter
+    """
+
+    story: NDArray[np.int64]
+    movement: NDArray[np.int64]
+    scale: NDArray[np.int64]
+    angle: NDArray[np.int64]
+    azimuth: NDArray[np.int64]
+    lam: NDArray[np.float64]
+    key: NDArray[np.int64]
+    on: NDArray[np.bool_]
+    before: NDArray[np.float64]
+    lens: NDArray[np.float64]
+    mu: NDArray[np.float64]
+    turn: NDArray[np.float64]
+    travel: NDArray[np.float64]
+    lead: NDArray[np.float64]
+    jitter: NDArray[np.float64]
+
+
+def draw(shot: Shot, stories: int, count: int, rng: np.random.Generator) -> Sample:
+    """``count`` candidates for a shot over so many story proposals."""
+
+    def pick(n: int) -> NDArray[np.int64]:
+        blocks = math.ceil(count / n)
+        return (
+            np.concatenate([rng.permutation(n) for _ in range(blocks)])[:count]
+            if n > 1
+            else np.zeros(count, int)
+        )
+
+    def spread() -> NDArray[np.float64]:
+        return np.asarray((rng.permutation(count) + rng.random(count)) / count)
+
+    return Sample(
+        story=pick(stories),
+        movement=pick(len(shot.movements)),
+        scale=pick(len(shot.scales)),
+        angle=pick(len(shot.angles)),
+        azimuth=pick(AZIMUTHS),
+        lam=np.asarray(shot.ease, float)[pick(len(shot.ease))],
+        key=pick(2),
+        on=pick(2).astype(bool),
+        before=np.array((0.0, 0.5, 1.0))[pick(3)],
+        lens=spread(),
+        mu=spread(),
+        turn=spread(),
+        travel=spread(),
+        lead=spread(),
+        jitter=spread(),
+    )

@@ -1,0 +1,94 @@
+"""Why a camera is not offered."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..cinema.angles import LOOKS_DOWN, LOOKS_UP
+from ..cinema.measures import Measured, Takes
+from ..cinema.moves import FLOOR_CLEARANCE, family
+from ..cinema.space import Stage
+from ..cinema.subject import Subject
+from .shooting import Shooting
+
+#: In the order they are asked; a candidate is counted under the first that holds.
+REASONS = (
+    "below_floor",
+    "in_wall",
+    "in_object",
+    "in_person",
+    "above_ceiling",
+    "too_far_outside",
+    "subject_out_of_frame",
+    "subject_hidden",
+    "wrong_size",
+    "wrong_angle",
+    "too_fast",
+    "missing_backdrop",
+)
+#: What may be let pass where hardly anything else is left: the take is possible, only less good.
+SOFT = tuple(
+    REASONS.index(r)
+    for r in (
+        "subject_hidden",
+        "subject_out_of_frame",
+        "wrong_size",
+        "wrong_angle",
+        "too_fast",
+        "missing_backdrop",
+    )
+)
+
+_IN_WALL = 0.06  # metres to a wall's box, drawn or not
+_NEAR_WALL = 0.2  # metres to a wall that is drawn
+_NEAR_OBJECT = 0.3
+_NEAR_PERSON = 0.12  # to a pillar 0.22 m thick
+_NEAR_FACE = 0.22
+_OUTSIDE = 3.0
+_FASTEST, _TURNS = 5.0, 130.0  # metres and degrees a second
+
+
+def reasons(
+    shooting: Shooting, measured: Measured, subject: Subject, stage: Stage, takes: Takes
+) -> NDArray[np.int64]:
+    """Index into :data:`REASONS` of every candidate [P], −1 for those to keep."""
+    v, track = measured.values, shooting.track
+    paper = shooting.rig == "paper"
+    near = 0.5 if paper else 1.0  # the paper's close-ups stand within arm's reach
+    ceiling = stage.ceiling if stage.ceiling is not None else np.inf
+    own = np.linalg.norm(track.position - subject.landmarks["eyes"][None], axis=-1).min(axis=1)
+    moving = np.array([family(m) in ("push", "pull", "zoom", "tilt", "pan") for m in shooting.movements])
+    drift = np.where(moving, 0.0, v["size_drift"])
+    walked = float(np.linalg.norm(np.diff(subject.position, axis=0), axis=1).sum())
+    asked = {
+        "below_floor": measured.lowest < FLOOR_CLEARANCE - 1e-6,
+        "in_wall": (measured.room.wall < _IN_WALL) | (measured.room.shown < _NEAR_WALL * near),
+        "in_object": measured.room.object < _NEAR_OBJECT * near,
+        "in_person": (measured.people < _NEAR_PERSON) | ((own < _NEAR_FACE) & (subject.kind == "person")),
+        "above_ceiling": measured.highest > ceiling - 0.1,
+        "too_far_outside": stage.outside(track.position) > _OUTSIDE,
+        "subject_out_of_frame": v["in_frame"] < (0.5 if walked > 0.5 else 0.7),
+        "subject_hidden": (v["visibility"] < 0.6) | (v["head_visible"] < 0.5),
+        "wrong_size": (v["size_error"] > (0.6 if paper else 0.25)) | (drift > 0.9),
+        "wrong_angle": _wrong_angle(shooting, v["elevation"]),
+        "too_fast": (v["speed"] > _FASTEST) | (v["angular_speed"] > _TURNS),
+        "missing_backdrop": v["backdrop_gap"] > 0.12,
+    }
+    out = np.full(len(shooting.movements), -1)
+    for k in reversed(range(len(REASONS))):
+        out[asked[REASONS[k]]] = k
+    return out
+
+
+def _wrong_angle(shooting: Shooting, elevation: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """Whether the key frame's elevation is not the asked one; raised cameras may look up less."""
+    angle = np.array(shooting.angles)
+    tilts = np.array([family(m) in ("tilt", "pedestal") for m in shooting.movements])
+    down, up = np.degrees(LOOKS_DOWN), np.degrees(LOOKS_UP)
+    eye = (angle == "eye-level") & ((elevation > down) | (elevation < up))
+    high = (angle == "high-angle") & (elevation < down)
+    low = (angle == "low-angle") & (elevation > up) & (shooting.lifted < 1e-9)
+    if shooting.rig == "paper":
+        return np.zeros(len(angle), bool)
+    return np.asarray((eye | high | low) & ~tilts)

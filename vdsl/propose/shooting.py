@@ -1,0 +1,255 @@
+"""Candidates to tracks: gives drawn variables their ranges, frames the subject, and moves the camera."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..cinema import rig_cinema, rig_paper
+from ..cinema.angles import CINEMA_THETA
+from ..cinema.framing import basis
+from ..cinema.moves import FLOOR_CLEARANCE, SIGN, Draw, family, track_of
+from ..cinema.sizes import size_of
+from ..cinema.subject import Subject, anchor
+from ..cinema.track import CameraTrack
+from ..lang.ir import Shot
+from .drawing import AZIMUTHS, Sample
+
+Array = NDArray[np.float64]
+
+FILM = (30.0, 80.0)  # focal lengths of films, mm (the paper, section 3.2)
+_JITTER = np.radians(9.0)  # how far a camera of ``rig cinema`` may stand off its azimuth
+_LEAD = 0.13  # how far off the middle one who looks sideways may be put, share of the width
+
+
+@dataclass(frozen=True, eq=False)
+class Shooting:
+    """P candidates of one story, shot.
+
+    order: [P] which of the given rows each is; movements, scales, angles: words, P each
+    key: frame the framing is of; draw: what was drawn, all [P]; lifted: radians off the asked angle to
+    stay above the floor; relative: azimuth from the subject's heading, radians
+    """
+
+    rig: str
+    track: CameraTrack
+    order: NDArray[np.int64]
+    movements: tuple[str, ...]
+    scales: tuple[str, ...]
+    angles: tuple[str, ...]
+    key: NDArray[np.int64]
+    draw: Draw
+    lifted: Array
+    relative: Array
+    height: Array
+
+    @property
+    def strata(self) -> NDArray[np.int64]:
+        """λ and end of each candidate as one small number, for variety."""
+        lam = np.unique(self.draw.lam, return_inverse=True)[1]
+        return np.asarray(2 * lam + self.draw.key)
+
+    def window(self, at: NDArray[np.int64], frames: int) -> NDArray[np.bool_]:
+        """bool [P, F]: sampled frames at which the subject is meant to be in the picture."""
+        time = at / max(frames - 1, 1)
+        out = np.ones((len(self.movements), len(at)), bool)
+        for p, movement in enumerate(self.movements):
+            kind = family(movement)
+            if kind in ("tilt", "pan"):
+                out[p] = time >= 0.75 if self.draw.on[p] else time <= 0.25
+                out[p, -1 if self.draw.on[p] else 0] = True
+            elif kind in ("dolly", "pedestal") and self.draw.travel[p] > 0 and self.draw.before[p] != 0.5:
+                out[p] = time >= 0.4 if self.draw.before[p] == 1.0 else time <= 0.6
+        return out
+
+    def params(self, p: int, roll: float) -> dict[str, float | str]:
+        """The drawn variables of one candidate, as docs/cinema.md lists them."""
+        d, kind = self.draw, family(self.movements[p])
+        out: dict[str, float | str] = {
+            "r": float(d.r[p]),
+            "theta": float(d.theta[p]),
+            "phi": float(d.phi[p]),
+            "azimuth": float(self.relative[p]),
+            "focal": float(d.focal[p]),
+            "lambda": float(d.lam[p]),
+            "roll": roll,
+            "floor_clearance": FLOOR_CLEARANCE,
+            "reference": "end" if d.key[p] else "start",
+        }
+        if self.rig == "paper":
+            out["reference_height"] = float(self.height[p])
+        else:
+            out |= {f"offset_{a}": float(d.offset[p, k]) for k, a in enumerate("xyz")}
+        if kind in ("push", "pull", "zoom"):
+            out["mu"] = float(d.mu[p])
+        if kind in ("tilt", "pan", "arc"):
+            out["turn"] = float(SIGN[self.movements[p]] * d.turn[p])
+        if kind in ("tilt", "pan"):
+            out["ending"] = "on" if d.on[p] else "off"
+        if kind in ("dolly", "pedestal"):
+            for word, t in (("start", 0), ("end", -1)):
+                out |= {f"{word}_{a}": float(self.track.position[p, t, k]) for k, a in enumerate("xyz")}
+        low = float(self.track.position[p, :, 2].min())
+        if self.lifted[p] > 1e-9 or low <= FLOOR_CLEARANCE + 1e-9:
+            out["lifted"] = float(self.lifted[p])
+        return out
+
+
+def shoot(
+    shot: Shot,
+    subject: Subject,
+    sample: Sample,
+    rows: NDArray[np.int64],
+    rig: str,
+    film: tuple[float, float],
+    fps: float,
+) -> Shooting:
+    """Tracks of the sampled rows on one subject."""
+    parts: list[Shooting] = []
+    for m, movement in enumerate(shot.movements):
+        for s, scale in enumerate(shot.scales):
+            local = np.flatnonzero((sample.movement[rows] == m) & (sample.scale[rows] == s))
+            if len(local):
+                parts.append(_shoot_one(shot, subject, sample, rows, local, movement, scale, rig, film, fps))
+    return parts[0] if len(parts) == 1 else _joined(parts)
+
+
+def _shoot_one(
+    shot: Shot,
+    subject: Subject,
+    sample: Sample,
+    rows: NDArray[np.int64],
+    local: NDArray[np.int64],
+    movement: str,
+    scale: str,
+    rig: str,
+    film: tuple[float, float],
+    fps: float,
+) -> Shooting:
+    """All candidates of one movement and one scale."""
+    i = rows[local]
+    kind, last = family(movement), subject.frames - 1
+    key = sample.key[i].copy()
+    on = sample.on[i]
+    if kind in ("zoom", "follow") or (rig == "paper" and kind != "static"):
+        key[:] = 0
+    if kind in ("tilt", "pan"):
+        key[:] = on
+    at = np.where(key == 1, last, 0)
+    mu = _mu(movement, sample.mu[i])
+    focal = _lens(shot, movement, scale, rig, sample.lens[i], mu)
+    relative = sample.azimuth[i] * (2 * np.pi / AZIMUTHS)
+    if rig == "cinema":
+        relative = relative + (2 * sample.jitter[i] - 1) * _JITTER
+    phi = subject.heading[at] + relative
+    angles = tuple(shot.angles[k] for k in sample.angle[i])
+    lead = sample.lead[i] * _LEAD
+    if rig == "paper":
+        path = subject.position + np.array((0.0, 0.0, rig_paper.reference_height(scale, subject.height)))
+        r = rig_paper.radius(scale, subject.height, focal)
+        theta = np.array([rig_paper.theta(a) for a in angles])
+        offset, lifted = np.zeros((len(i), 3)), np.zeros(len(i))
+        height = np.full(len(i), rig_paper.reference_height(scale, subject.height))
+    else:
+        size = size_of(subject.kind, scale)
+        path = anchor(subject, size.upper, size.lower, fps)
+        asked = np.array([CINEMA_THETA[a] for a in angles])
+        framing = rig_cinema.frame(subject, size, path, at, asked, phi, focal, film, lead)
+        r, theta, offset, lifted = framing.r, framing.theta, framing.offset, framing.lifted
+        height = np.zeros(len(i))
+        if kind in ("push", "pull"):
+            r = np.where(key == 1, r / mu, r)
+    travel, before, key = _travel(subject, movement, sample, i, r, focal, film, phi, key)
+    draw = Draw(
+        r, theta, phi, focal, offset, sample.lam[i], mu, _turn(kind, sample.turn[i]), travel, before, key, on
+    )
+    track = track_of(movement, path, draw, film, shot.roll)
+    n = len(i)
+    return Shooting(
+        rig, track, local, (movement,) * n, (scale,) * n, angles, np.where(key == 1, last, 0), draw, lifted,
+        relative, height,
+    )  # fmt: skip
+
+
+def _mu(movement: str, u: Array) -> Array:
+    """μ ∈ [0.5, 0.8] inwards, (1.0, 1.2] outwards; below 1.05 nothing would be seen to move."""
+    if movement in ("push", "zoom-in"):
+        return 0.5 + 0.3 * u
+    return 1.05 + 0.15 * u
+
+
+def _turn(kind: str, u: Array) -> Array:
+    low, high = (90.0, 120.0) if kind == "arc" else (30.0, 60.0)
+    return np.radians(low + (high - low) * u)
+
+
+def _lens(shot: Shot, movement: str, scale: str, rig: str, u: Array, mu: Array) -> Array:
+    """Focal lengths at the first frame, evenly in the logarithm; zooms end inside the films' range too."""
+    low, high = shot.lens
+    if rig == "paper":
+        low = high = float(np.clip(rig_paper.FOCAL, low, high))
+    bottom, top = np.full_like(u, low), np.full_like(u, high)
+    if movement == "zoom-in":
+        top = np.maximum(np.minimum(top, max(high, FILM[1]) * mu), bottom)
+    elif movement == "zoom-out":
+        bottom = np.minimum(np.maximum(bottom, min(low, FILM[0]) * mu), top)
+    share = u**2 if scale in ("full", "wide") else u  # long lenses need more room than most rooms have
+    return np.asarray(bottom * (top / bottom) ** share)
+
+
+def _travel(
+    subject: Subject,
+    movement: str,
+    sample: Sample,
+    i: NDArray[np.int64],
+    r: Array,
+    focal: Array,
+    film: tuple[float, float],
+    phi: Array,
+    key: NDArray[np.int64],
+) -> tuple[Array, Array, NDArray[np.int64]]:
+    """Length, share before the framing, and key of dollies and pedestals: along with one who walks that
+    way, else a part of what the picture shows."""
+    u, before = sample.travel[i], sample.before[i]
+    kind = family(movement)
+    if kind == "dolly":
+        along = SIGN[movement] * basis(np.full_like(phi, np.pi / 2), phi)[0]
+        walked = ((subject.position[-1] - subject.position[0]) * along).sum(-1)
+        with_it = walked > 0.5
+        travel = np.clip((0.22 + 0.2 * u) * r * film[0] / focal, 0.3, 3.0)
+        travel = np.where(with_it, walked * (0.85 + 0.2 * u), travel)
+        return travel, np.where(with_it, np.where(key == 1, 1.0, 0.0), before), key
+    if kind == "pedestal":
+        return np.clip((0.3 + 0.35 * u) * r * film[1] / focal, 0.2, 2.0), before, key
+    return np.zeros_like(u), before, key
+
+
+def _joined(parts: list[Shooting]) -> Shooting:
+    """Several as one."""
+
+    def cat(name: str) -> NDArray[np.float64]:
+        return np.concatenate([getattr(p, name) for p in parts])
+
+    track = CameraTrack(
+        np.concatenate([p.track.position for p in parts]),
+        np.concatenate([p.track.rotation for p in parts]),
+        np.concatenate([p.track.focal for p in parts]),
+        np.concatenate([p.track.look_at for p in parts]),
+        parts[0].track.sensor,
+    )
+    draw = Draw(*(np.concatenate([getattr(p.draw, f.name) for p in parts]) for f in fields(Draw)))
+    return Shooting(
+        parts[0].rig,
+        track,
+        cat("order").astype(np.int64),
+        tuple(w for p in parts for w in p.movements),
+        tuple(w for p in parts for w in p.scales),
+        tuple(w for p in parts for w in p.angles),
+        cat("key").astype(np.int64),
+        draw,
+        cat("lifted"),
+        cat("relative"),
+        cat("height"),
+    )

@@ -6,6 +6,8 @@ later is an error, because Taichi would throw every kernel and buffer away.
 
 from __future__ import annotations
 
+import contextlib
+import io
 import os
 from dataclasses import dataclass
 from typing import Any
@@ -65,6 +67,7 @@ def start(device: str = "auto") -> Backend:
         if device not in ("auto", backend.name):
             raise DeviceError(f"this process already renders on {backend.name}; start another one for {device}")
         return backend
+    os.environ.setdefault("ENABLE_TAICHI_HEADER_PRINT", "0")
     import taichi as ti
 
     threads = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
@@ -73,14 +76,15 @@ def start(device: str = "auto") -> Backend:
         arch = getattr(ti, name)
         if name != "cpu" and not ti._lib.core.with_cuda() and name == "cuda":
             continue
-        ti.init(
-            arch=arch,
-            offline_cache=True,
-            cpu_max_num_threads=threads,
-            fast_math=False,
-            log_level=ti.ERROR,
-            enable_fallback=False,
-        )
+        with contextlib.redirect_stdout(io.StringIO()):  # it prints a banner
+            ti.init(
+                arch=arch,
+                offline_cache=True,
+                cpu_max_num_threads=threads,
+                fast_math=False,  # shared edges must come out the same in every triangle
+                log_level=ti.ERROR,
+                enable_fallback=False,
+            )
         if ti.lang.impl.current_cfg().arch == arch or name == "cpu":
             _started.append(Backend(name, threads))
             return _started[0]

@@ -58,14 +58,14 @@ def proportions(spec: BodySpec) -> Proportions:
         chin=chin,
         neck=chin - h * _mix(0.037, 0.028, c),
         shoulder=(shoulder_half, chin - h * _mix(0.058, 0.050, c)),
-        hip=(h * _mix(_mix(0.051, 0.053, f) + 0.004 * (build - 0.42), 0.053, c), h * _mix(0.522, 0.475, c)),
-        pelvis=h * _mix(0.555, 0.505, c),
-        knee=h * _mix(0.284, 0.262, c),
+        hip=(h * _mix(_mix(0.051, 0.053, f) + 0.004 * (build - 0.42), 0.053, c), h * _mix(0.530, 0.478, c)),
+        pelvis=h * _mix(0.562, 0.507, c),
+        knee=h * _mix(0.288, 0.263, c),
         ankle=h * _mix(0.044, 0.046, c),
         upper_arm=h * _mix(0.168, 0.155, c),
         forearm=h * _mix(0.147, 0.138, c),
         hand=h * _mix(_mix(0.113, 0.108, f), 0.113, c),
-        foot=h * _mix(_mix(0.158, 0.150, f), 0.160, c),
+        foot=h * _mix(_mix(0.153, 0.144, f), 0.156, c),
         stoop=e,
         girth=_mix(0.90, 1.28, build) * _mix(1.0, 0.92, f) * _mix(1.0, 1.04, c),
         belly=_mix(0.88, 1.5, build) + 0.06 * e,
@@ -98,7 +98,7 @@ def make_skeleton(spec: BodySpec) -> Skeleton:
 
 def _face(hx: float, chin: float, head: float) -> dict[str, tuple[float, float, float]]:
     """Left-hand joints of the face; brows and mouth corners turn about points inside the head."""
-    eye = (hx + 0.290 * head, 0.148 * head, chin + 0.475 * head)
+    eye = (hx + 0.235 * head, 0.150 * head, chin + 0.470 * head)
     return {
         "eye": eye,
         "lid": eye,

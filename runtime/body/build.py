@@ -1,0 +1,186 @@
+"""From a spec to a skinned mesh, kept on disk between runs.
+
+The result depends on the spec and on :data:`VERSION` alone.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import tempfile
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+from platformdirs import user_cache_path
+
+from ..mesh import MATERIALS, Mesh
+from .anatomy import Figure
+from .features import head_pieces, limb_pieces
+from .field import gradient
+from .outfit import bare_legs, bottom, shoes, top
+from .pieces import PARTS, Piece, other_side
+from .skeleton import PALETTE, Skeleton
+from .spec import BodySpec
+from .surface import Patch
+from .weights import body_weights, face_weights, rigid, strongest
+
+#: Raised with every change of shape, so that old cache files are not read.
+VERSION = 1
+
+
+@dataclass(frozen=True, eq=False)
+class Body:
+    """A person ready to be posed.
+
+    mesh: in the bind pose, model coordinates; its parts index :data:`runtime.body.pieces.PARTS`
+    joints: int32 [V, 4], indices into :data:`runtime.body.skeleton.PALETTE`; weights: float32 [V, 4]
+    """
+
+    spec: BodySpec
+    skeleton: Skeleton
+    mesh: Mesh
+    joints: NDArray[np.int32]
+    weights: NDArray[np.float32]
+
+
+def build_body(spec: BodySpec, cache: Path | None = None) -> Body:
+    """The body of a spec, from the cache folder where it is there and whole, else made and put there.
+
+    cache: folder to use; None for the user's own. A folder that cannot be written is no error.
+    """
+    folder = user_cache_path("vdsl") / "bodies" if cache is None else cache
+    name = hashlib.sha256(f"{VERSION};{spec.key()};{';'.join(PALETTE)}".encode()).hexdigest()[:24]
+    path = folder / f"{name}.npz"
+    found = _load(path, spec)
+    if found is not None:
+        return found
+    body = make_body(spec)
+    _store(path, body)
+    return body
+
+
+def make_body(spec: BodySpec) -> Body:
+    """Builds a body, no cache involved."""
+    figure = Figure(spec)
+    pieces = [
+        *head_pieces(figure),
+        *limb_pieces(figure),
+        *top(figure),
+        *bottom(figure),
+        *shoes(figure),
+        *bare_legs(figure),
+    ]
+    rows = [_finish(figure, piece) for piece in pieces if len(piece.patch.faces)]
+    counts = np.cumsum([0] + [len(r[0]) for r in rows])
+    faces = np.concatenate([r[2] + n for r, n in zip(rows, counts[:-1], strict=True)])
+    sizes = [len(r[2]) for r in rows]
+    looks = [p for p in pieces if len(p.patch.faces)]
+    mesh = Mesh(
+        np.concatenate([r[0] for r in rows]).astype(np.float32),
+        faces.astype(np.int32),
+        np.concatenate([r[1] for r in rows]).astype(np.float32),
+        np.repeat(np.array([p.colour for p in looks], np.float32), sizes, axis=0),
+        np.repeat(np.array([PARTS.index(p.part) for p in looks], np.int32), sizes),
+        np.repeat(np.array([MATERIALS.index(p.material) for p in looks], np.int32), sizes),
+    )
+    joints, weights = strongest(np.concatenate([r[3] for r in rows]))
+    return Body(spec, figure.skeleton, mesh, joints, weights)
+
+
+def _finish(
+    figure: Figure, piece: Piece
+) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.int64], NDArray[np.float64]]:
+    """Vertices, normals, faces and dense weights of a piece, both sides where it has two."""
+    vertices, normals, faces = piece.patch.vertices, _normals(piece), piece.patch.faces
+    weights = _weights(figure, piece)
+    if piece.symmetry == "whole":
+        return vertices, normals, faces, weights
+    twin = other_side(piece)
+    other_weights = _weights(figure, twin)
+    n = len(vertices)
+    index = np.arange(n) + n
+    if piece.symmetry == "half":
+        seam = np.abs(vertices[:, 1]) < 1e-9
+        normals[seam, 1] = 0.0
+        normals[seam] /= np.maximum(np.linalg.norm(normals[seam], axis=1, keepdims=True), 1e-9)
+        index[seam] = np.flatnonzero(seam)
+    faces = np.concatenate([faces, index[twin.patch.faces]])
+    flipped = normals * np.array([1.0, -1.0, 1.0])
+    vertices = np.concatenate([vertices, twin.patch.vertices])
+    normals = np.concatenate([normals, flipped])
+    weights = np.concatenate([weights, other_weights])
+    used, inverse = np.unique(faces, return_inverse=True)
+    return vertices[used], normals[used], inverse.reshape(-1, 3), weights[used]
+
+
+def _normals(piece: Piece) -> NDArray[np.float64]:
+    if piece.solid is not None:
+        normals = gradient(piece.solid, piece.patch.vertices)
+    else:
+        normals = vertex_normals(piece.patch)
+    return normals / np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-9)
+
+
+def vertex_normals(patch: Patch) -> NDArray[np.float64]:
+    """Area-weighted normals of the triangles around each vertex."""
+    corner = patch.vertices[patch.faces]
+    normal = np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0])
+    out = np.zeros_like(patch.vertices)
+    for k in range(3):
+        np.add.at(out, patch.faces[:, k], normal)
+    return out
+
+
+def _weights(figure: Figure, piece: Piece) -> NDArray[np.float64]:
+    points = piece.patch.vertices
+    if piece.rule == "body":
+        return body_weights(figure, points)
+    if piece.rule == "legs":
+        return body_weights(figure, points, arms=False)
+    if piece.rule == "skirt":
+        return body_weights(figure, points, side_blend=0.09)
+    if piece.rule == "face":
+        return face_weights(figure, points)
+    return rigid(piece.rule, len(points))
+
+
+_ARRAYS = ("vertices", "faces", "normals", "colors", "parts", "materials")
+
+
+def _load(path: Path, spec: BodySpec) -> Body | None:
+    """The body in a cache file; None where the file is missing, damaged or not of this version."""
+    try:
+        with np.load(path, allow_pickle=False) as data:
+            mesh = Mesh(*(data[name] for name in _ARRAYS))
+            joints, weights = data["joints"], data["weights"]
+    except Exception:  # a cache file may hold anything; numpy and zipfile raise many kinds for it
+        return None
+    n = len(mesh.vertices)
+    sound = joints.shape == (n, 4) and weights.shape == (n, 4) and joints.dtype == np.int32
+    if (
+        not sound
+        or not n
+        or joints.min() < 0
+        or joints.max() >= len(PALETTE)
+        or not np.isfinite(weights).all()
+    ):
+        return None
+    return Body(spec, Figure(spec).skeleton, mesh, joints, weights.astype(np.float32))
+
+
+def _store(path: Path, body: Body) -> None:
+    """Writes a cache file in one step; a full or read-only disk is passed over."""
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        handle, name = tempfile.mkstemp(dir=path.parent, suffix=".part")
+    except OSError:
+        return
+    try:
+        with os.fdopen(handle, "wb") as file:
+            arrays = {key: getattr(body.mesh, key) for key in _ARRAYS}
+            np.savez(file, joints=body.joints, weights=body.weights, **arrays)
+        os.replace(name, path)
+    except OSError:
+        Path(name).unlink(missing_ok=True)

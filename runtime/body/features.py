@@ -1,0 +1,247 @@
+"""The head's and hands' pieces: skin cut into eyes' openings and lips, eyeballs, lids, brows, glasses."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .anatomy import ARM_FRAME, Figure, arm
+from .field import Field, Points, Values
+from .hair import hair_pieces
+from .head import Head, brow_line, eye_opening, lips, mouth, with_neck
+from .pieces import Piece, hemmed, parted, shade
+from .spec import Colour
+from .surface import Focus, Patch, clip, half, polygonise, simplify
+
+_WHITE: Colour = (0.97, 0.96, 0.94)
+_DARK: Colour = (0.10, 0.07, 0.07)
+_LASH: Colour = (0.15, 0.10, 0.09)
+
+
+def head_pieces(f: Figure) -> list[Piece]:
+    """Everything above the collar."""
+    head = Head(f)
+    return [*_skin(head), *_eyes(head), *_brows(head), *_glasses(head), *hair_pieces(head)]
+
+
+def limb_pieces(f: Figure) -> list[Piece]:
+    """The bare arms with their hands, as far as sleeves may leave them free."""
+    solid = arm(f)
+    h, reach = f.p.height, f.p.upper_arm + f.p.forearm + 1.1 * f.p.hand
+    origin = f.joint("upperarm_l")
+    long_sleeves = f.spec.top in ("shirt", "sweater", "blazer", "coat")
+    start = (f.p.upper_arm + f.p.forearm) * 0.90 if long_sleeves else 0.22 * f.p.upper_arm
+    local: Field = lambda q: solid(q @ ARM_FRAME + origin)  # noqa: E731
+    patch = polygonise(local, (start, -0.065 * h, -0.06 * h), (reach, 0.065 * h, 0.06 * h), 0.0033 * h / 1.7)
+    wrist = f.p.upper_arm + f.p.forearm
+    focus = Focus((wrist + 0.55 * f.p.hand, 0.0, 0.0), 0.6 * f.p.hand, 2.2)
+    patch = simplify(patch, 720 if long_sleeves else 900, local, focus)
+    patch = Patch(
+        patch.vertices @ ARM_FRAME + origin,
+        patch.faces[:, ::-1] if np.linalg.det(ARM_FRAME) < 0 else patch.faces,
+    )
+    return [Piece(patch, f.spec.skin, "skin", solid, symmetry="side")]
+
+
+def _skin(head: Head) -> list[Piece]:
+    f, u, o = head.figure, head.unit, head.origin
+    solid = with_neck(head)
+    low, high = o + np.array([-0.55, -0.04, -0.42]) * u, o + np.array([0.60, 0.48, 1.05]) * u
+    patch = polygonise(solid, low, high, 0.0150 * u)
+    centre = o + np.array([0.30, 0.10, 0.34]) * u
+    focus = Focus((float(centre[0]), float(centre[1]), float(centre[2])), 0.26 * u, 2.6)
+    patch = half(simplify(patch, 1850, solid, focus))
+    line = o[2] - 0.40 * u
+    patch = clip(patch, lambda p: line - p[:, 2])
+    opening = head.field(eye_opening(head))
+    lash = head.field(_lash_outline(head))
+    piece = Piece(clip(patch, opening, keep_outside=True), f.spec.skin, "skin", solid, rule="face")
+    piece = hemmed(piece, 0.010 * u)
+    rest, rim = parted(piece, lash, _LASH, "skin")
+    rest, lip = parted(rest, head.field(lips(head)), lip_colour(f), "skin")
+    lip, line_ = parted(lip, head.field(mouth(head)), (0.22, 0.07, 0.08), "mouth")
+    return [rest, rim, lip, line_]
+
+
+def _lash_outline(head: Head) -> Field:
+    """A thin crescent along the upper lid."""
+    thick = 0.011 + 0.009 * head.fem
+    outer = eye_opening(head, grow=0.006, lift=thick)
+    ez = head.eye[2]
+
+    def field(p: Points) -> Values:
+        return np.maximum(outer(p), ez + 0.006 - p[:, 2])
+
+    return field
+
+
+def lip_colour(f: Figure) -> Colour:
+    """Redder than the skin, more so for women."""
+    r, g, b = f.spec.skin
+    t = 0.30 + 0.35 * f.fem
+    target = (0.72 * (0.55 + 0.45 * r), 0.27 * (0.4 + 0.6 * g), 0.28 * (0.4 + 0.6 * b))
+    return (r + (target[0] - r) * t, g + (target[1] - g) * t, b + (target[2] - b) * t)
+
+
+def ball(centre: NDArray[np.float64], radius: float, polar: list[float], segments: int) -> Patch:
+    """A sphere's part around +X between polar angles (radians, the first may be 0)."""
+    turn = np.arange(segments) * 2 * np.pi / segments
+    rings = [
+        np.stack([np.full(segments, np.cos(a)), np.sin(a) * np.cos(turn), np.sin(a) * np.sin(turn)], 1)
+        for a in polar
+    ]
+    vertices = centre + radius * np.concatenate(rings)
+    faces = []
+    for i in range(len(polar) - 1):
+        for k in range(segments):
+            a, b = i * segments + k, i * segments + (k + 1) % segments
+            c, d = a + segments, b + segments
+            if polar[i] > 0:
+                faces.append((a, d, b))
+            faces.append((a, c, d))
+    return Patch(vertices, np.array(faces, np.int64))
+
+
+def _eyes(head: Head) -> list[Piece]:
+    """Left eyeball in rings of pupil, iris and white with a glint, and the lid that closes over it."""
+    f, r = head.figure, head.eye_radius * head.unit
+    centre = head.metres(head.eye[None])[0]
+    iris = float(np.arcsin(0.050 / head.eye_radius))
+    pupil = 0.50 * iris
+    seen: Field = lambda p: np.linalg.norm(p - centre, axis=1) - r  # noqa: E731
+
+    def ring(angles: list[float], colour: Colour) -> Piece:
+        patch = ball(centre, r, angles, 18)
+        return Piece(patch, colour, "eye", seen, rule="eye_l", symmetry="side")
+
+    pieces = [
+        ring([0.0, pupil], _DARK),
+        ring([pupil, 0.82 * iris], f.spec.eye_color),
+        ring([0.82 * iris, iris], shade(f.spec.eye_color, 0.45)),
+        ring([iris, 0.75, 1.05, 1.5], _WHITE),
+    ]
+    tilt = np.array([0.93, -0.12, 0.26])
+    glint = ball(np.zeros(3), r * 1.012, [0.0, 0.085], 8)
+    axis = tilt / np.linalg.norm(tilt)
+    across = np.cross((0.0, 0.0, 1.0), axis)
+    across /= np.linalg.norm(across)
+    basis = np.stack([axis, across, np.cross(axis, across)])
+    spot = Patch(glint.vertices @ basis + centre, glint.faces)
+    pieces.append(Piece(spot, (1.0, 1.0, 1.0), "eye", seen, rule="eye_l", symmetry="side"))
+    return pieces + _lid(head, centre, r * 1.065, seen)
+
+
+#: Turn about Y, radians, that closes a lid.
+LID_CLOSED = 1.0
+
+
+def _lid(head: Head, centre: NDArray[np.float64], radius: float, seen: Field) -> list[Piece]:
+    side, up = np.linspace(-1.25, 1.25, 11), np.linspace(-0.42, 0.75, 5)
+    yaw, pitch = np.meshgrid(side, up, indexing="ij")
+    droop = pitch + 0.10 * (yaw / 1.25) ** 2 * (pitch < 0)
+    points = np.stack([np.cos(yaw) * np.cos(droop), np.sin(yaw), np.cos(yaw) * np.sin(droop)], -1).reshape(
+        -1, 3
+    )
+    c, s = np.cos(-LID_CLOSED), np.sin(-LID_CLOSED)
+    turned = np.stack(
+        [points[:, 0] * c + points[:, 2] * s, points[:, 1], -points[:, 0] * s + points[:, 2] * c], 1
+    )
+    rows, columns = len(side), len(up)
+    faces = []
+    for i in range(rows - 1):
+        for k in range(columns - 1):
+            a = i * columns + k
+            faces += [(a, a + columns, a + columns + 1), (a, a + columns + 1, a + 1)]
+    all_faces = np.array(faces, np.int64)
+    edge = (all_faces % columns <= 1).all(1) & ((all_faces % columns).min(1) == 0)
+    vertices = centre + radius * turned
+    skin, lash = Patch(vertices, all_faces[~edge]), Patch(vertices, all_faces[edge])
+    colour = shade(head.figure.spec.skin, 0.90)
+    return [
+        Piece(skin, colour, "skin", seen, rule="lid_l", symmetry="side"),
+        Piece(lash, _LASH, "skin", seen, rule="lid_l", symmetry="side"),
+    ]
+
+
+def tube(line: Points, half_sizes: Points, up: Points, segments: int = 6) -> Patch:
+    """A closed strand around a line: [N, 2] half sizes across and along ``up`` [N, 3]."""
+    along = np.gradient(line, axis=0)
+    along /= np.linalg.norm(along, axis=1, keepdims=True)
+    across = np.cross(along, up)
+    across /= np.linalg.norm(across, axis=1, keepdims=True)
+    upright = np.cross(across, along)
+    turn = np.arange(segments) * 2 * np.pi / segments
+    ring = (
+        across[:, None] * (half_sizes[:, :1] * np.cos(turn))[..., None]
+        + upright[:, None] * (half_sizes[:, 1:] * np.sin(turn))[..., None]
+    )
+    n = len(line)
+    vertices = np.concatenate([(line[:, None] + ring).reshape(-1, 3), line[:1], line[-1:]])
+    faces = []
+    for i in range(n - 1):
+        for k in range(segments):
+            a, b = i * segments + k, i * segments + (k + 1) % segments
+            faces += [(a, b + segments, b), (a, a + segments, b + segments)]
+    for k in range(segments):
+        b = (k + 1) % segments
+        faces += [(n * segments, k, b), (n * segments + 1, (n - 1) * segments + b, (n - 1) * segments + k)]
+    return _outward(Patch(vertices, np.array(faces, np.int64)))
+
+
+def _outward(patch: Patch) -> Patch:
+    a, b, c = (patch.vertices[patch.faces[:, k]] for k in range(3))
+    middle = patch.vertices.mean(0)
+    volume = float(((a - middle) * np.cross(b - middle, c - middle)).sum())
+    return patch if volume > 0 else Patch(patch.vertices, patch.faces[:, ::-1])
+
+
+def brow_colour(f: Figure) -> Colour:
+    """The hair's, dark enough to read."""
+    r, g, b = f.spec.hair_color
+    light = 0.3 * r + 0.6 * g + 0.1 * b
+    return shade((r, g, b), 0.62 if light > 0.35 else 0.85)
+
+
+def _brows(head: Head) -> list[Piece]:
+    line = brow_line(head)
+    t = np.linspace(0.0, 1.0, len(line))
+    strong = 1.0 - 0.30 * head.fem - 0.20 * head.figure.spec.youth
+    tall = 0.0235 * strong * (0.85 + 0.3 * np.sin(np.pi * np.minimum(t + 0.25, 1.0))) * (1.0 - 0.72 * t**2.2)
+    sizes = np.stack([0.6 * tall + 0.004, tall], 1)
+    patch = tube(head.metres(line), sizes * head.unit, np.tile([0.0, 0.0, 1.0], (len(line), 1)))
+    return [Piece(patch, brow_colour(head.figure), "skin", None, rule="brow_l", symmetry="side")]
+
+
+def _glasses(head: Head) -> list[Piece]:
+    """Round frames, bridge and temples."""
+    if not head.figure.spec.glasses:
+        return []
+    ex, ey, ez = head.eye
+    turn = np.linspace(0.0, 2 * np.pi, 21)
+    x = ex + 0.150 - 0.25 * np.clip(np.cos(turn), 0.0, 1.0) ** 2 * 0.16
+    rim = np.stack([x, ey + 0.124 * np.cos(turn), ez - 0.012 + 0.100 * np.sin(turn)], 1)
+    arm_ = np.array(
+        [
+            [ex + 0.11, ey + 0.124, ez + 0.02],
+            [0.10, 0.315, ez + 0.03],
+            [-0.03, 0.345, ez + 0.03],
+            [-0.08, 0.345, ez - 0.03],
+        ]
+    )
+    bridge = np.array(
+        [
+            [ex + 0.150, ey - 0.122, ez + 0.012],
+            [ex + 0.170, 0.012, ez + 0.030],
+            [ex + 0.170, -0.001, ez + 0.030],
+        ]
+    )
+    pieces = []
+    for line, size in ((rim, 0.0095), (arm_, 0.009), (bridge, 0.009)):
+        up = (
+            np.tile([1.0, 0.0, 0.0], (len(line), 1))
+            if line is rim
+            else np.tile([0.0, 0.0, 1.0], (len(line), 1))
+        )
+        patch = tube(head.metres(line), np.full((len(line), 2), size * head.unit), up, 5)
+        pieces.append(Piece(patch, (0.10, 0.09, 0.10), "glasses", None, rule="head", symmetry="side"))
+    return pieces

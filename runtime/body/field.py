@@ -1,0 +1,175 @@
+"""Implicit surfaces: signed distances (about; negative inside) of simple solids and how they join.
+
+A :data:`Field` maps points float64 [N, 3] to float64 [N]. Distances are true near the surface to within
+a factor that the polygoniser allows for; gradients are smooth where the solids are joined smoothly.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy.interpolate import PchipInterpolator
+
+Points = NDArray[np.float64]
+Values = NDArray[np.float64]
+Field = Callable[[Points], Values]
+
+_SAMPLES = 96
+
+
+def ellipsoid(centre: ArrayLike, radii: ArrayLike, axes: ArrayLike | None = None) -> Field:
+    """An ellipsoid; ``axes`` [3, 3] has its unit axes as rows (the world's where None)."""
+    c, r = np.asarray(centre, float), np.broadcast_to(np.asarray(radii, float), (3,))
+    frame = None if axes is None else np.asarray(axes, float)
+
+    def field(p: Points) -> Values:
+        d = p - c
+        if frame is not None:
+            d = d @ frame.T
+        q = d / r
+        length = np.sqrt((q * q).sum(1)) + 1e-9
+        slope = np.sqrt(((q / r) ** 2).sum(1)) + 1e-9
+        return length * (length - 1.0) / slope
+
+    return field
+
+
+def round_cone(a: ArrayLike, b: ArrayLike, ra: float, rb: float, flat: ArrayLike | None = None) -> Field:
+    """The solid between spheres of radii ``ra`` at ``a`` and ``rb`` at ``b``.
+
+    ``flat``: a vector (direction and factor as its length) along which space is stretched first, which
+    flattens the cross-section.
+    """
+    pa, pb = np.asarray(a, float), np.asarray(b, float)
+    stretch = np.zeros(3) if flat is None else np.asarray(flat, float)
+    factor = float(np.linalg.norm(stretch))
+    unit = stretch / factor if factor else stretch
+
+    def widen(v: Points) -> Points:
+        return v if not factor else v + np.outer(v @ unit, unit) * (factor - 1.0)
+
+    axis = widen((pb - pa)[None])[0]
+    length2 = float(axis @ axis)
+    slope = (rb - ra) / np.sqrt(length2)
+    tilt = 1.0 / np.sqrt(1.0 + slope * slope)
+
+    def field(p: Points) -> Values:
+        d = widen(p - pa)
+        t = np.clip(d @ axis / length2, 0.0, 1.0)
+        off = d - t[:, None] * axis
+        return (np.sqrt((off * off).sum(1)) - (ra + (rb - ra) * t)) * tilt / max(factor, 1.0)
+
+    return field
+
+
+@dataclass(frozen=True)
+class Knot:
+    """A cross-section of a loft.
+
+    at: distance along the axis; front, back: half extents along +v and -v; side: half extent along ±w
+    v, w: where its middle lies off the axis; outer: half extent along +w where it differs from ``side``
+    """
+
+    at: float
+    front: float
+    back: float
+    side: float
+    v: float = 0.0
+    w: float = 0.0
+    outer: float | None = None
+
+
+def loft(
+    origin: ArrayLike, frame: ArrayLike, knots: Sequence[Knot], power: float = 2.0, grow: float = 0.0
+) -> Field:
+    """A solid of cross-sections along an axis, monotone cubic in between.
+
+    frame: rows u (along the axis), v and w, orthonormal; power: 2 for ellipses, more for squarer ones;
+    grow: thickness added all round. The ends are flat.
+    """
+    o, axes = np.asarray(origin, float), np.asarray(frame, float)
+    at = np.array([k.at for k in knots])
+    columns = np.array(
+        [[k.front, k.back, k.side, k.side if k.outer is None else k.outer, k.v, k.w] for k in knots], float
+    )
+    columns[:, :4] += grow
+    grid = np.linspace(at[0], at[-1], _SAMPLES)
+    table = PchipInterpolator(at, columns, axis=0)(grid)
+    table[:, :4] = np.maximum(table[:, :4], 1e-4)
+    scale = (_SAMPLES - 1) / (at[-1] - at[0])
+    slope = np.abs(np.gradient(table[:, :4], grid, axis=0)).mean(1)
+    tilt = 1.0 / np.sqrt(1.0 + np.minimum(slope, 2.0) ** 2)
+
+    def field(p: Points) -> Values:
+        local = (p - o) @ axes.T
+        x = np.clip((local[:, 0] - at[0]) * scale, 0.0, _SAMPLES - 1.001)
+        i = x.astype(np.intp)
+        f = (x - i)[:, None]
+        row = table[i] * (1.0 - f) + table[i + 1] * f
+        dv, dw = local[:, 1] - row[:, 4], local[:, 2] - row[:, 5]
+        qv = np.abs(dv) / np.where(dv > 0, row[:, 0], row[:, 1])
+        qw = np.abs(dw) / np.where(dw > 0, row[:, 3], row[:, 2])
+        q = (qv**power + qw**power) ** (1.0 / power) + 1e-6
+        away = np.hypot(dv, dw)
+        mean = np.where(q > 1e-3, away / q, row[:, :4].min(1))
+        radial = (q - 1.0) * mean * tilt[i]
+        end = np.maximum(at[0] - local[:, 0], local[:, 0] - at[-1])
+        return np.minimum(np.maximum(radial, end), 0.0) + np.hypot(
+            np.maximum(radial, 0.0), np.maximum(end, 0.0)
+        )
+
+    return field
+
+
+def smooth_min(a: Values, b: Values, k: float) -> Values:
+    """The polynomial smooth minimum: joins two solids with a fillet of about ``k`` metres."""
+    if k <= 0.0:
+        return np.minimum(a, b)
+    h = np.maximum(k - np.abs(a - b), 0.0) / k
+    return np.minimum(a, b) - h * h * h * k / 6.0
+
+
+def union(parts: Sequence[tuple[Field, float]]) -> Field:
+    """Solids joined in order, each with its own fillet in metres."""
+
+    def field(p: Points) -> Values:
+        total = parts[0][0](p)
+        for part, k in parts[1:]:
+            total = smooth_min(total, part(p), k)
+        return total
+
+    return field
+
+
+def carve(solid: Field, tool: Field, k: float) -> Field:
+    """``solid`` without ``tool``, the edge rounded by ``k`` metres."""
+    return lambda p: -smooth_min(-solid(p), tool(p), k)
+
+
+def offset(solid: Field, by: float) -> Field:
+    """The solid grown by ``by`` metres."""
+    return lambda p: solid(p) - by
+
+
+def mirrored(solid: Field) -> Field:
+    """The solid of the left half on both sides of Y = 0."""
+
+    def field(p: Points) -> Values:
+        q = p.copy()
+        q[:, 1] = np.abs(q[:, 1])
+        return solid(q)
+
+    return field
+
+
+def gradient(field: Field, points: Points, step: float = 1.5e-3) -> Points:
+    """Central differences of a field, [N, 3], not normalised."""
+    out = np.empty_like(points)
+    for axis in range(3):
+        d = np.zeros(3)
+        d[axis] = step
+        out[:, axis] = field(points + d) - field(points - d)
+    return out / (2.0 * step)

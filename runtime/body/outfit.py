@@ -1,0 +1,384 @@
+"""Clothes: shapes of their own a few millimetres off the body, cut exactly, with the thickness of a hem."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from .anatomy import ARM_FRAME, LEG_FRAME, TORSO_FRAME, Figure, arm_loft, leg_loft, shoe, trunk
+from .field import Field, Knot, Points, Values, loft, smooth_min, union
+from .pieces import Piece, hemmed, parted, shade
+from .spec import Colour
+from .surface import Patch, clip, half, polygonise, simplify
+
+
+def sleeve(f: Figure, grow: float, end: float, flare: float = 0.0) -> Field:
+    """The left sleeve, ``end`` metres down the arm, its solid running a little beyond the cut."""
+    origin, thick = f.joint("upperarm_l"), arm_loft(f, grow)
+    if flare <= 0.0:
+        return thick
+    h = f.p.height
+    cone = loft(
+        origin,
+        ARM_FRAME,
+        [
+            Knot(0.06 * h, 0.030 * h, 0.030 * h, 0.028 * h),
+            Knot(end + 0.03 * h, 0.028 * h + flare, 0.028 * h + flare, 0.026 * h + flare),
+        ],
+    )
+    return union([(thick, 0.0), (cone, 0.02)])
+
+
+def along_arm(f: Figure, end: float) -> Field:
+    """Cut across the left arm: negative above ``end`` metres from the shoulder; everything near the trunk is."""
+    origin = f.joint("upperarm_l")
+
+    def field(p: Points) -> Values:
+        d = p - origin
+        local = d @ ARM_FRAME.T
+        h = f.p.height
+        on_arm = (np.abs(local[:, 1]) < 0.10 * h) & (local[:, 2] > -0.066 * h)
+        return np.where(on_arm, local[:, 0] - end, -0.1)
+
+    return field
+
+
+def above(z: float, slope: float = 0.0) -> Field:
+    """Cut keeping what is above ``z``; ``slope`` tilts it up towards the front."""
+    return lambda p: z - p[:, 2] + slope * p[:, 0]
+
+
+def both(a: Field, b: Field) -> Field:
+    return lambda p: np.maximum(a(p), b(p))
+
+
+def neckline(f: Figure, level: float, slope: float, scoop: float = 0.0, wide: float = 1.0) -> Field:
+    """Cut keeping what is below a collar line that falls towards the front; ``scoop`` deepens it there.
+
+    wide: radius of the opening around the neck, against the neck's own with some air
+    """
+    h, z = f.p.height, f.level(level)
+    x = f.joint("neck")[0]
+    radius = h * f.mix(0.047, 0.041) * (1.0 + 0.35 * f.heavy) * wide
+
+    def field(p: Points) -> Values:
+        dx = p[:, 0] - x
+        round_ = scoop * np.clip(dx / (0.05 * h), 0.0, 1.4) * np.exp(-((p[:, 1] / (0.042 * h)) ** 2))
+        line = p[:, 2] - (z - slope * dx - round_)
+        return np.minimum(line, radius - np.hypot(np.clip(dx, -1.0, 0.0), p[:, 1]))
+
+    return field
+
+
+def _box(
+    f: Figure, low_z: float, high_z: float, arm: bool
+) -> tuple[tuple[float, float, float], tuple[float, float, float]]:
+    h = f.p.height
+    y = f.p.shoulder[1] * 0.0 + (0.42 * h if arm else 0.26 * h)
+    return (-0.24 * h, -0.03, low_z), (0.26 * h, y, high_z)
+
+
+def top_solid(f: Figure, grow: float, ease: float, sleeves: Field) -> Field:
+    """Trunk and left sleeve of a garment."""
+    h = f.p.height
+    body, leg = trunk(f, grow, ease), leg_loft(f, grow)
+    return lambda p: smooth_min(smooth_min(body(p), leg(p), 0.03 * h), sleeves(p), 0.026 * h)
+
+
+def _surface(f: Figure, solid: Field, low_z: float, high_z: float, arm: bool, faces: int) -> Patch:
+    low, high = _box(f, low_z, high_z, arm)
+    return half(simplify(polygonise(solid, low, high, 0.0075 * f.p.height / 1.7), faces, solid))
+
+
+def top(f: Figure) -> list[Piece]:
+    """What the spec's ``top`` is, left half."""
+    makers = {
+        "tshirt": _tshirt,
+        "shirt": _shirt,
+        "sweater": _sweater,
+        "blazer": _blazer,
+        "coat": _coat,
+        "dress": _dress,
+    }
+    return makers[f.spec.top](f)
+
+
+def _tshirt(f: Figure) -> list[Piece]:
+    h, a = f.p.height, f.p.upper_arm
+    end = (0.64 if f.fem < 0.5 else 0.50) * a
+    solid = top_solid(f, 0.0090 * h, 0.10 + 0.06 * (1 - f.fem), sleeve(f, 0.0085 * h, end, 0.010 * h))
+    hem = f.level(-0.02 - 0.06 * (1.0 - f.fem))
+    patch = _surface(f, solid, hem - 0.04 * h, f.level(1.35), True, 900)
+    patch = clip(
+        patch,
+        both(both(above(hem), along_arm(f, end)), neckline(f, 1.10, 0.50, 0.012 * h + 0.012 * h * f.fem)),
+    )
+    return [hemmed(Piece(patch, f.spec.top_color, "top", solid, material="cloth"), 0.010 * h)]
+
+
+def _long_sleeved(
+    f: Figure, grow: float, ease: float, hem: float, collar: Field, wrist: float, faces: int = 1150
+) -> Piece:
+    h = f.p.height
+    end = (f.p.upper_arm + f.p.forearm) * wrist
+    solid = top_solid(f, grow, ease, sleeve(f, grow * 1.05, end))
+    patch = _surface(f, solid, hem - 0.04 * h, f.level(1.35), True, faces)
+    patch = clip(patch, both(both(above(hem), along_arm(f, end)), collar))
+    return Piece(patch, f.spec.top_color, "top", solid, material="cloth")
+
+
+def _bands(
+    f: Figure, piece: Piece, hem: float, wrist: float, width: float, factor: float, part: str
+) -> list[Piece]:
+    """Cuffs and hem as bands of a shade of their own."""
+    h, end = f.p.height, (f.p.upper_arm + f.p.forearm) * wrist
+    colour = shade(piece.colour, factor)
+    cuff = along_arm(f, end - width * h)
+    pieces = parted(piece, lambda p: -cuff(p), colour, part)
+    if hem > 0:
+        low = parted(pieces[0], lambda p: p[:, 2] - hem - width * h, colour, part)
+        pieces = [low[0], *pieces[1:], low[1]]
+    return pieces
+
+
+def _shirt(f: Figure) -> list[Piece]:
+    h = f.p.height
+    hem = f.level(-0.05)
+    piece = _long_sleeved(f, 0.0085 * h, 0.14, hem, neckline(f, 1.13, 0.55, 0.02 * h), 0.97)
+    pieces = _bands(f, piece, 0.0, 0.97, 0.030, 0.90, "trim")
+    placket = parted(
+        pieces[0],
+        lambda p: np.maximum(p[:, 1] - 0.0085 * h, 0.02 - p[:, 0]),
+        shade(piece.colour, 0.93),
+        "trim",
+    )
+    return [hemmed(q, 0.009 * h) for q in [*placket, *pieces[1:]]] + _collar(f, piece.colour)
+
+
+def _collar(f: Figure, colour: Colour) -> list[Piece]:
+    """A turned-down shirt collar: a sloping band around the neck with points in front."""
+    h = f.p.height
+    z, x = f.level(1.10), f.joint("neck")[0] + 0.004 * h
+    r = h * f.mix(0.040, 0.0335) * (1.0 + 0.35 * f.heavy)
+    solid = loft(
+        (x, 0.0, z),
+        TORSO_FRAME,
+        [
+            Knot(-0.050 * h, 1.95 * r, 1.55 * r, 1.75 * r),
+            Knot(-0.020 * h, 1.42 * r, 1.28 * r, 1.36 * r),
+            Knot(0.006 * h, 1.08 * r, 1.08 * r, 1.08 * r, v=-0.002 * h),
+            Knot(0.034 * h, 0.96 * r, 1.02 * r, 0.98 * r, v=-0.004 * h),
+        ],
+    )
+
+    def cut(p: Points) -> Values:
+        dx, y, dz = p[:, 0] - x, np.abs(p[:, 1]), p[:, 2] - z
+        up = dz - (0.020 * h - 0.42 * dx)
+        front = np.clip(dx / (0.04 * h), 0.0, 1.5)
+        down = (
+            -0.012 * h - 0.40 * dx - 0.022 * h * front * np.exp(-(((y - 0.026 * h) / (0.016 * h)) ** 2))
+        ) - dz
+        open_ = np.where(dx > 0, 0.004 * h + np.maximum(0.010 * h - 0.35 * dx - dz, 0.0) * 0.75 - y, -1.0)
+        return np.maximum(np.maximum(up, down), open_)
+
+    patch = polygonise(
+        solid, (x - 0.1 * h, -0.03, z - 0.06 * h), (x + 0.12 * h, 0.1 * h, z + 0.05 * h), 0.0045
+    )
+    patch = clip(half(simplify(patch, 350, solid)), cut)
+    return [hemmed(Piece(patch, shade(colour, 1.10), "trim", solid, material="cloth"), 0.010 * h)]
+
+
+def _sweater(f: Figure) -> list[Piece]:
+    h = f.p.height
+    hem = f.level(-0.06)
+    piece = _long_sleeved(f, 0.0120 * h, 0.16, hem, neckline(f, 1.17, 0.50), 0.97)
+    pieces = _bands(f, piece, hem, 0.97, 0.028, 0.84, "trim")
+    line = neckline(f, 1.085, 0.55)
+    ring = parted(pieces[0], lambda p: -line(p), shade(piece.colour, 0.84), "trim")
+    return [hemmed(q, 0.013 * h) for q in [*ring, *pieces[1:]]]
+
+
+def _blazer(f: Figure, hem_level: float = -0.22, skirt: float = 0.0) -> list[Piece]:
+    h = f.p.height
+    hem = f.level(hem_level) if skirt <= 0 else f.p.knee + 0.02 * h
+    grow, ease = 0.0150 * h, 0.16
+    end = (f.p.upper_arm + f.p.forearm) * 0.96
+    solid = top_solid(f, grow, ease, sleeve(f, 0.0115 * h, end))
+    if skirt > 0:
+        body, tail = solid, _tail(f, hem)
+        solid = lambda p: smooth_min(body(p), tail(p), 0.05 * h)  # noqa: E731
+    patch = _surface(f, solid, hem - 0.04 * h, f.level(1.35), True, 1250)
+    patch = clip(patch, both(both(above(hem, 0.05), along_arm(f, end)), neckline(f, 1.13, 0.35)))
+    button = f.level(0.36)
+    opening, lapel = _front(f, button, 0.0), _front(f, button, 0.042 * h)
+    cloth = Piece(clip(patch, opening, keep_outside=True), f.spec.top_color, "top", solid, material="cloth")
+    pieces = parted(
+        cloth,
+        lambda p: np.maximum(lapel(p), button + 0.012 * h - p[:, 2]),
+        shade(f.spec.top_color, 1.12),
+        "trim",
+    )
+    under = replace(f.spec, top="shirt", top_color=f.spec.shirt_color)
+    shirt = _long_sleeved(
+        Figure(under), 0.0062 * h, 0.12, f.level(-0.05), neckline(f, 1.13, 0.55, 0.02 * h), 0.985
+    )
+    shown = [hemmed(replace(shirt, part="shirt"), 0.009 * h)]
+    return (
+        [hemmed(q, 0.011 * h) for q in pieces]
+        + shown
+        + [replace(q, part="shirt") for q in _collar(f, f.spec.shirt_color)]
+    )
+
+
+def _front(f: Figure, button: float, margin: float) -> Field:
+    """The open front of a jacket: a wedge from the button up to the collar and a slit below it."""
+    h = f.p.height
+
+    def field(p: Points) -> Values:
+        up = np.clip((p[:, 2] - button) / (f.level(1.13) - button), 0.0, 1.3)
+        down = np.clip((button - p[:, 2]) / (0.25 * h), 0.0, 1.0)
+        width = 0.036 * h * up**0.85 + 0.018 * h * down**1.5 + 0.0015 * h
+        return np.maximum(
+            p[:, 1] - width - margin * np.minimum(up * 2.2, 1.0), f.joint("neck")[0] + 0.004 * h - p[:, 0]
+        )
+
+    return field
+
+
+def _tail(f: Figure, hem: float, wide: float = 0.0) -> Field:
+    """The skirt of a coat or dress from the waist down past ``hem``."""
+    h = f.p.height
+    k = 1.0 + 0.5 * f.heavy
+    waist, hip = f.level(0.38), f.level(-0.04)
+    side = h * f.mix(0.098, 0.108) * k
+    drop = hem - 0.05 * h
+    return loft(
+        (0.0, 0.0, 0.0),
+        TORSO_FRAME,
+        [
+            Knot(drop, side * (0.98 + wide), side * (0.92 + wide), side * (1.18 + wide)),
+            Knot(
+                (hip + drop) / 2,
+                0.80 * side * (1 + 0.6 * wide),
+                0.85 * side * (1 + 0.6 * wide),
+                side * (1.12 + 0.5 * wide),
+            ),
+            Knot(hip, 0.66 * side, 0.82 * side, 1.06 * side),
+            Knot(f.level(0.16), 0.60 * side, 0.62 * side, 0.95 * side),
+            Knot(waist, 0.50 * side * f.mix(1.05, 0.9), 0.48 * side, 0.80 * side * f.mix(1.05, 0.86)),
+        ],
+        power=2.15,
+    )
+
+
+def _coat(f: Figure) -> list[Piece]:
+    return _blazer(f, skirt=1.0)
+
+
+def _dress(f: Figure) -> list[Piece]:
+    h = f.p.height
+    hem = f.p.knee + 0.012 * h
+    end = 0.42 * f.p.upper_arm
+    body, tail = top_solid(f, 0.0060 * h, 0.0, sleeve(f, 0.007 * h, end, 0.007 * h)), _tail(f, hem, 0.30)
+    solid = lambda p: smooth_min(body(p), tail(p), 0.02 * h)  # noqa: E731
+    patch = _surface(f, solid, hem - 0.04 * h, f.level(1.35), True, 1200)
+    patch = clip(patch, both(both(above(hem), along_arm(f, end)), neckline(f, 1.08, 0.55, 0.028 * h)))
+    piece = Piece(patch, f.spec.top_color, "top", solid, rule="skirt", material="cloth")
+    waist = f.level(0.38)
+    belt = parted(piece, lambda p: np.abs(p[:, 2] - waist) - 0.011 * h, shade(f.spec.top_color, 0.72), "belt")
+    return [hemmed(q, 0.010 * h) for q in belt]
+
+
+# --- below the waist -----------------------------------------------------------------
+
+
+def trouser_leg(f: Figure, grow: float) -> Field:
+    """The left leg of trousers: the leg's own shape above, straight from the knee down."""
+    h, a, b = f.p.height, f.p.hip[1] - f.p.knee, f.p.knee - f.p.ankle
+    k = h * (1.0 + 0.35 * f.heavy)
+    c = k * f.mix(1.0, 0.90)
+    straight = loft(
+        f.joint("thigh_l"),
+        LEG_FRAME,
+        [
+            Knot(0.10 * a, 0.040 * c, 0.040 * c, 0.036 * c),
+            Knot(0.80 * a, 0.0375 * c, 0.0385 * c, 0.0355 * c),
+            Knot(a + 0.20 * b, 0.0335 * c, 0.0420 * c, 0.0365 * c),
+            Knot(a + 0.60 * b, 0.0305 * c, 0.0375 * c, 0.0330 * c),
+            Knot(a + 1.10 * b, 0.0315 * c, 0.0355 * c, 0.0325 * c),
+        ],
+    )
+    return union([(leg_loft(f, grow), 0.0), (straight, 0.02 * h)])
+
+
+def bottom(f: Figure) -> list[Piece]:
+    """What the spec's ``bottom`` is, left half; a dress needs none."""
+    h = f.p.height
+    if f.spec.top == "dress":
+        return []
+    if f.spec.bottom == "skirt":
+        return _skirt(f)
+    grow = 0.0042 * h
+    body, leg = trunk(f, grow, 0.0, chest=False), trouser_leg(f, grow)
+    solid = lambda p: smooth_min(body(p), leg(p), 0.03 * h)  # noqa: E731
+    shorts = f.spec.bottom == "shorts"
+    if shorts:
+        wide = loft(
+            f.joint("thigh_l"),
+            LEG_FRAME,
+            [
+                Knot(0.08 * h, 0.040 * h, 0.040 * h, 0.038 * h),
+                Knot(0.26 * h, 0.052 * h, 0.052 * h, 0.047 * h),
+            ],
+        )
+        inner = solid
+        solid = lambda p: smooth_min(inner(p), wide(p), 0.02 * h)  # noqa: E731
+    low = f.p.knee + 0.035 * h if shorts else 0.56 * f.p.ankle
+    waist = f.level(0.14)
+    patch = _surface(f, solid, low - 0.04 * h, waist + 0.05 * h, False, 800)
+    patch = clip(patch, both(above(low, 0.06), lambda p: p[:, 2] - waist))
+    piece = Piece(patch, f.spec.bottom_color, "bottom", solid, rule="legs", material="cloth")
+    return [hemmed(piece, 0.010 * h)]
+
+
+def _skirt(f: Figure) -> list[Piece]:
+    h = f.p.height
+    hem, waist = f.p.knee + 0.02 * h, f.level(0.36)
+    body, tail = trunk(f, 0.004 * h, 0.0, chest=False), _tail(f, hem, 0.16)
+    solid = lambda p: smooth_min(body(p), tail(p), 0.02 * h)  # noqa: E731
+    patch = _surface(f, solid, hem - 0.04 * h, waist + 0.05 * h, False, 550)
+    patch = clip(patch, both(above(hem), lambda p: p[:, 2] - waist))
+    return [
+        hemmed(Piece(patch, f.spec.bottom_color, "bottom", solid, rule="skirt", material="cloth"), 0.010 * h)
+    ]
+
+
+def shoes(f: Figure) -> list[Piece]:
+    """The left shoe with its sole."""
+    h, solid = f.p.height, shoe(f)
+    n, y = f.p.foot, f.p.hip[0]
+    patch = polygonise(solid, (-0.35 * n, y - 0.3 * n, -0.004), (0.85 * n, y + 0.3 * n, 0.12 * h), 0.0055)
+    patch = simplify(patch, 300, solid)
+    upper = Piece(patch, f.spec.shoes_color, "shoes", solid, rule="legs", symmetry="side")
+    sole = 0.22 * f.p.ankle
+    dark = shade(f.spec.shoes_color, 0.55) if sum(f.spec.shoes_color) > 0.9 else (0.72, 0.70, 0.66)
+    if _legs_show(f):
+        line = 0.80 * f.p.ankle
+        keep = clip(patch, lambda p: p[:, 2] - line - 0.12 * np.abs(p[:, 0] + 0.02 * n))
+        upper = hemmed(replace(upper, patch=keep), 0.008 * h)
+    return parted(upper, lambda p: p[:, 2] - sole, dark, "sole")
+
+
+def _legs_show(f: Figure) -> bool:
+    return f.spec.top == "dress" or f.spec.bottom in ("skirt", "shorts")
+
+
+def bare_legs(f: Figure) -> list[Piece]:
+    """The left leg's skin where clothes leave it free."""
+    if not _legs_show(f):
+        return []
+    h, solid = f.p.height, leg_loft(f)
+    top_z = f.p.knee + 0.10 * h
+    patch = polygonise(solid, (-0.1 * h, 0.0, 0.3 * f.p.ankle), (0.1 * h, 0.14 * h, top_z), 0.0065)
+    return [Piece(simplify(patch, 420, solid), f.spec.skin, "skin", solid, rule="legs", symmetry="side")]

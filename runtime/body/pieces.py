@@ -1,0 +1,73 @@
+"""A body while it is being put together: pieces of surface, each with its colour, part and way to hang."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from .field import Field
+from .spec import Colour
+from .surface import Patch, compact, mirror, rim, split
+
+#: Part labels: the ink line runs where they change.
+PARTS = (
+    "skin", "mouth", "eye", "lash", "hair", "top", "trim", "shirt", "bottom", "belt", "shoes", "sole", "glasses",
+)  # fmt: skip
+
+
+@dataclass(frozen=True, eq=False)
+class Piece:
+    """Surface of one look.
+
+    solid: field whose gradient gives the normals (of the half Y >= 0 for ``symmetry`` half and side), or
+        None to take them from the triangles
+    rule: how it hangs: body, legs (no arms), skirt, face, or the name of one joint
+    symmetry: half (ends on Y = 0 and is welded to its mirror image), side (mirrored), whole
+    """
+
+    patch: Patch
+    colour: Colour
+    part: str
+    solid: Field | None = None
+    rule: str = "body"
+    symmetry: str = "half"
+    material: str = "plain"
+
+    def looking(self, colour: Colour, part: str) -> Piece:
+        return replace(self, colour=colour, part=part)
+
+
+def shade(colour: Colour, factor: float) -> Colour:
+    """Darker (below 1) or paler (above 1) of the same hue."""
+    if factor <= 1.0:
+        return (colour[0] * factor, colour[1] * factor, colour[2] * factor)
+    t = min(factor - 1.0, 1.0)
+    return (colour[0] + (1 - colour[0]) * t, colour[1] + (1 - colour[1]) * t, colour[2] + (1 - colour[2]) * t)
+
+
+def parted(piece: Piece, cut: Field, colour: Colour, part: str) -> list[Piece]:
+    """The piece with what lies inside ``cut`` in another look."""
+    inside, outside = split(piece.patch, cut)
+    return [replace(piece, patch=outside), replace(piece, patch=inside, colour=colour, part=part)]
+
+
+def hemmed(piece: Piece, depth: float) -> Piece:
+    """The piece with the thickness of its cloth shown at its borders (except on Y = 0)."""
+    assert piece.solid is not None
+    strip = rim(piece.patch, piece.solid, depth)
+    if piece.symmetry == "half":
+        on_seam = (np.abs(strip.vertices[:, 1]) < 1e-9)[strip.faces]
+        strip = compact(Patch(strip.vertices, strip.faces[on_seam.sum(1) < 2]))
+    n = len(piece.patch.vertices)
+    joined = Patch(
+        np.concatenate([piece.patch.vertices, strip.vertices]),
+        np.concatenate([piece.patch.faces, strip.faces + n]),
+    )
+    return replace(piece, patch=joined)
+
+
+def other_side(piece: Piece) -> Piece:
+    """The mirror image of a left piece."""
+    rule = piece.rule[:-2] + "_r" if piece.rule.endswith("_l") else piece.rule
+    return replace(piece, patch=mirror(piece.patch), rule=rule)

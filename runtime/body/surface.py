@@ -1,0 +1,209 @@
+"""From fields to triangles: narrow-band marching cubes, simplification, exact cuts, rims, mirroring.
+
+A :class:`Patch` is a piece of surface on its way into the body: vertices and faces only.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import fast_simplification
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from skimage.measure import marching_cubes
+
+from .field import Field, Points, Values, gradient
+
+Faces = NDArray[np.int64]
+
+
+@dataclass(frozen=True, eq=False)
+class Patch:
+    """vertices: float64 [V, 3], metres; faces: int64 [F, 3], counter-clockwise seen from outside."""
+
+    vertices: Points
+    faces: Faces
+
+
+def polygonise(field: Field, low: ArrayLike, high: ArrayLike, step: float) -> Patch:
+    """The zero surface of a field inside a box, by marching cubes on a grid of ``step`` metres.
+
+    Fine values are taken only near the surface, found on a grid four times as coarse: parts thinner
+    than about two steps may be missed. Vertices are moved onto the surface by one Newton step.
+    """
+    lo, hi = np.asarray(low, float), np.asarray(high, float)
+    blocks = np.maximum(np.ceil((hi - lo) / (4 * step)).astype(int), 1)
+    axes = [lo[i] + 4 * step * (np.arange(blocks[i]) + 0.5) for i in range(3)]
+    centres = np.stack(np.meshgrid(*axes, indexing="ij"), -1).reshape(-1, 3)
+    coarse = field(centres)
+    near = np.flatnonzero(np.abs(coarse) < 4.4 * step)
+    near_value = np.repeat(np.where(coarse > 0, step, -step), 64).reshape(*blocks, 4, 4, 4)
+    sub = (np.stack(np.meshgrid(*[np.arange(4)] * 3, indexing="ij"), -1).reshape(-1, 3) - 1.5) * step
+    fine = field((centres[near][:, None] + sub).reshape(-1, 3)).reshape(-1, 4, 4, 4)
+    near_value.reshape(-1, 4, 4, 4)[near] = fine
+    volume = near_value.transpose(0, 3, 1, 4, 2, 5).reshape(*(blocks * 4))
+    volume = np.pad(volume, 1, constant_values=step)
+    if not (volume < 0).any():
+        return Patch(np.zeros((0, 3)), np.zeros((0, 3), np.int64))
+    vertices, faces, _, _ = marching_cubes(volume.astype(np.float32), 0.0, spacing=(step,) * 3)
+    vertices = vertices.astype(np.float64) + (lo + 0.5 * step - step)
+    return Patch(settle(field, vertices, step), faces.astype(np.int64))
+
+
+def settle(field: Field, vertices: Points, reach: float) -> Points:
+    """Points moved onto the zero surface, by at most ``reach`` metres."""
+    slope = gradient(field, vertices)
+    length2 = np.maximum((slope * slope).sum(1), 0.05)
+    move = -(field(vertices) / length2)[:, None] * slope
+    size = np.linalg.norm(move, axis=1, keepdims=True)
+    return vertices + move * np.minimum(1.0, reach / np.maximum(size, 1e-9))
+
+
+@dataclass(frozen=True)
+class Focus:
+    """A ball in which simplification keeps more detail: space there counts as ``factor`` times as large."""
+
+    centre: tuple[float, float, float]
+    radius: float
+    factor: float = 2.5
+
+    def _radii(self) -> tuple[Values, Values]:
+        r = np.linspace(0.0, 6.0 * self.radius, 400)
+        return r, r * (1.0 + (self.factor - 1.0) * np.exp(-((r / self.radius) ** 2) / 1.4))
+
+    def warp(self, points: Points, inverse: bool = False) -> Points:
+        plain, wide = self._radii()
+        wide = np.maximum.accumulate(wide + plain * 1e-6)
+        d = points - np.array(self.centre)
+        r = np.linalg.norm(d, axis=1) + 1e-12
+        to = np.interp(r, wide, plain, right=np.inf) if inverse else np.interp(r, plain, wide, right=np.inf)
+        factor = np.where(np.isfinite(to), to / r, 1.0)
+        return np.array(self.centre) + d * factor[:, None]
+
+
+def simplify(patch: Patch, faces: int, field: Field | None = None, focus: Focus | None = None) -> Patch:
+    """At most about ``faces`` triangles by quadric error; settled on ``field`` again where given."""
+    if len(patch.faces) <= faces:
+        return patch
+    before = patch.vertices if focus is None else focus.warp(patch.vertices)
+    vertices, out = fast_simplification.simplify(
+        before.astype(np.float32), patch.faces.astype(np.int32), target_count=faces, agg=7
+    )
+    points = vertices.astype(np.float64)
+    if focus is not None:
+        points = focus.warp(points, inverse=True)
+    if field is not None:
+        points = settle(field, points, 4e-3)
+    return Patch(points, out.astype(np.int64))
+
+
+def clip(patch: Patch, cut: Field, keep_outside: bool = False) -> Patch:
+    """The part where ``cut`` is negative; triangles across the border are split exactly along it."""
+    inside, outside = split(patch, cut)
+    return outside if keep_outside else inside
+
+
+def split(patch: Patch, cut: Field) -> tuple[Patch, Patch]:
+    """The parts of a patch where ``cut`` is negative and positive.
+
+    Border points are found on the edges by a secant step and are shared by both parts' geometry, so
+    nothing opens between them.
+    """
+    values = _off_zero(cut(patch.vertices))
+    edges, position, value = _border(patch, cut, values)
+    vertices = np.concatenate([patch.vertices, position])
+    index = {}
+    for k, (a, b) in enumerate(edges.tolist()):
+        index[(a, b)] = len(patch.vertices) + k
+    below: list[tuple[int, int, int]] = []
+    above: list[tuple[int, int, int]] = []
+    negative = values < 0
+    count = negative[patch.faces].sum(1)
+    for face in patch.faces[(count == 1) | (count == 2)].tolist():
+        lone = 1 if int(negative[face].sum()) == 1 else 0
+        at = next(i for i in range(3) if negative[face[i]] == bool(lone))
+        a, b, c = face[at], face[(at + 1) % 3], face[(at + 2) % 3]
+        ab, ac = index[(min(a, b), max(a, b))], index[(min(a, c), max(a, c))]
+        single, double = (below, above) if lone else (above, below)
+        single.append((a, ab, ac))
+        double.append((ab, b, c))
+        double.append((ab, c, ac))
+    keep_in = np.concatenate([patch.faces[count == 3], np.array(below, np.int64).reshape(-1, 3)])
+    keep_out = np.concatenate([patch.faces[count == 0], np.array(above, np.int64).reshape(-1, 3)])
+    return compact(Patch(vertices, keep_in)), compact(Patch(vertices, keep_out))
+
+
+def _off_zero(values: Values) -> Values:
+    return np.where(np.abs(values) < 2e-4, np.where(values < 0, -2e-4, 2e-4), values)
+
+
+def _border(patch: Patch, cut: Field, values: Values) -> tuple[NDArray[np.int64], Points, Values]:
+    pairs = np.sort(
+        np.concatenate([patch.faces[:, [0, 1]], patch.faces[:, [1, 2]], patch.faces[:, [2, 0]]]), axis=1
+    )
+    pairs = np.unique(pairs, axis=0)
+    pairs = pairs[(values[pairs[:, 0]] < 0) != (values[pairs[:, 1]] < 0)]
+    a, b = patch.vertices[pairs[:, 0]], patch.vertices[pairs[:, 1]]
+    t0, t1 = np.zeros(len(pairs)), np.ones(len(pairs))
+    f0, f1 = values[pairs[:, 0]], values[pairs[:, 1]]
+    t = f0 / (f0 - f1)
+    for _ in range(3):
+        f = cut(a + (b - a) * t[:, None]) if len(pairs) else f0
+        low = (f < 0) == (f0 < 0)
+        t0, f0 = np.where(low, t, t0), np.where(low, f, f0)
+        t1, f1 = np.where(low, t1, t), np.where(low, f1, f)
+        step = f0 - f1
+        t = np.where(np.abs(step) > 1e-9, t0 + (t1 - t0) * f0 / np.where(np.abs(step) > 1e-9, step, 1.0), t)
+    t = np.clip(t, 0.02, 0.98)
+    return pairs, a + (b - a) * t[:, None], t
+
+
+def compact(patch: Patch) -> Patch:
+    """Without unused vertices and without triangles of no area."""
+    corner = patch.vertices[patch.faces]
+    area = np.linalg.norm(np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0]), axis=1)
+    faces = patch.faces[area > 1e-11]
+    used, inverse = np.unique(faces, return_inverse=True)
+    return Patch(patch.vertices[used], inverse.reshape(-1, 3).astype(np.int64))
+
+
+def cull(patch: Patch, solid: Field, depth: float) -> Patch:
+    """Without the triangles that lie deeper than ``depth`` metres inside another solid."""
+    hidden = solid(patch.vertices) < -depth
+    return compact(Patch(patch.vertices, patch.faces[~hidden[patch.faces].all(1)]))
+
+
+def boundary(patch: Patch) -> NDArray[np.int64]:
+    """Directed edges [E, 2] of the border, each as its triangle runs."""
+    edges = np.concatenate([patch.faces[:, [0, 1]], patch.faces[:, [1, 2]], patch.faces[:, [2, 0]]])
+    n = len(patch.vertices)
+    forward = edges[:, 0] * n + edges[:, 1]
+    return edges[~np.isin(forward, edges[:, 1] * n + edges[:, 0])]
+
+
+def rim(patch: Patch, field: Field, depth: float) -> Patch:
+    """A strip from the patch's border straight into the surface: the thickness of a hem."""
+    edges = boundary(patch)
+    if not len(edges):
+        return Patch(np.zeros((0, 3)), np.zeros((0, 3), np.int64))
+    used, inverse = np.unique(edges, return_inverse=True)
+    a, b = inverse.reshape(-1, 2).T
+    outer = patch.vertices[used]
+    slope = gradient(field, outer)
+    slope /= np.maximum(np.linalg.norm(slope, axis=1, keepdims=True), 1e-9)
+    n = len(used)
+    faces = np.concatenate([np.stack([b, a, a + n], 1), np.stack([b, a + n, b + n], 1)])
+    return Patch(np.concatenate([outer, outer - slope * depth]), faces.astype(np.int64))
+
+
+def mirror(patch: Patch) -> Patch:
+    """The patch on the other side of Y = 0."""
+    return Patch(patch.vertices * np.array([1.0, -1.0, 1.0]), np.ascontiguousarray(patch.faces[:, ::-1]))
+
+
+def half(patch: Patch) -> Patch:
+    """The part at Y >= 0, its border pulled exactly onto Y = 0."""
+    kept = clip(patch, lambda p: -p[:, 1])
+    vertices = kept.vertices.copy()
+    vertices[np.abs(vertices[:, 1]) < 5e-4, 1] = 0.0
+    return compact(Patch(vertices, kept.faces))

@@ -1,0 +1,171 @@
+"""Skin weights as a smooth function of where a point lies in the bind pose.
+
+Layers of cloth over the same spot get the same weights, so nothing underneath comes through when the
+body bends. Weights belong to :data:`runtime.body.skeleton.PALETTE`; half joints take the middle of a
+bend, which keeps elbows and knees full.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .anatomy import ARM_FRAME, Figure
+from .field import Points, Values
+from .head import Head, corner_share, jaw_share
+from .skeleton import PALETTE
+
+_COLUMN = {name: i for i, name in enumerate(PALETTE)}
+_SWAP = np.array(
+    [
+        _COLUMN[n[:-2] + {"_l": "_r", "_r": "_l"}[n[-2:]]] if n[-2:] in ("_l", "_r") else _COLUMN[n]
+        for n in PALETTE
+    ]
+)
+
+
+def ramp(x: Values, low: float, high: float) -> Values:
+    """A smooth step from 0 at ``low`` to 1 at ``high``."""
+    t = np.clip((x - low) / (high - low), 0.0, 1.0)
+    return t * t * (3.0 - 2.0 * t)
+
+
+def body_weights(
+    figure: Figure, points: Points, side_blend: float = 0.02, arms: bool = True
+) -> NDArray[np.float64]:
+    """Dense weights [N, len(PALETTE)] anywhere on body and clothes; rows sum to 1.
+
+    side_blend: half width, as a share of the height, of the change from left to right leg (more for skirts)
+    """
+    left = points[:, 1] >= 0
+    folded = points.copy()
+    folded[:, 1] = np.abs(folded[:, 1])
+    w = _half_weights(figure, folded, side_blend, arms)
+    return np.where(left[:, None], w, w[:, _SWAP])
+
+
+def face_weights(figure: Figure, points: Points) -> NDArray[np.float64]:
+    """As :func:`body_weights`, with the jaw and the corners of the mouth."""
+    w = body_weights(figure, points, arms=False)
+    head = Head(figure)
+    folded = head.units(points)
+    left = folded[:, 1] >= 0
+    folded[:, 1] = np.abs(folded[:, 1])
+    share = w[:, _COLUMN["head"]].copy()
+    jaw = jaw_share(head, folded) * share
+    corner = corner_share(head, folded) * (share - jaw)
+    w[:, _COLUMN["jaw"]] += jaw
+    w[:, _COLUMN["mouth_l"]] += corner * left
+    w[:, _COLUMN["mouth_r"]] += corner * ~left
+    w[:, _COLUMN["head"]] -= jaw + corner
+    return w
+
+
+def rigid(name: str, count: int) -> NDArray[np.float64]:
+    """Weights of points that hang on one joint alone."""
+    w = np.zeros((count, len(PALETTE)))
+    w[:, _COLUMN[name]] = 1.0
+    return w
+
+
+def strongest(weights: NDArray[np.float64], count: int = 4) -> tuple[NDArray[np.int32], NDArray[np.float32]]:
+    """The ``count`` largest weights of each row: indices [N, count] and weights that sum to 1."""
+    order = np.argsort(-weights, axis=1, kind="stable")[:, :count]
+    top = np.take_along_axis(weights, order, axis=1)
+    top = np.where(top < 0.004, 0.0, top)
+    top /= top.sum(1, keepdims=True)
+    return np.where(top > 0, order, order[:, :1]).astype(np.int32), top.astype(np.float32)
+
+
+def _half_weights(f: Figure, p: Points, side_blend: float, arms: bool) -> NDArray[np.float64]:
+    w = np.zeros((len(p), len(PALETTE)))
+    torso = _torso(f, p)
+    legs = _leg(f, p)
+    arm, share = _arm(f, p) if arms else ({}, np.zeros(len(p)))
+    h = f.p.height
+    on_leg = sum(legs.values()) * (1.0 - share)
+    side = 0.5 + 0.5 * ramp(p[:, 1], 0.0, side_blend * h)
+    for name, value in torso.items():
+        w[:, _COLUMN[name]] += value * (1.0 - on_leg) * (1.0 - share)
+    for name, value in legs.items():
+        w[:, _COLUMN[f"{name}_l"]] += value * (1.0 - share) * side
+        w[:, _COLUMN[f"{name}_r"]] += value * (1.0 - share) * (1.0 - side)
+    for name, value in arm.items():
+        w[:, _COLUMN[f"{name}_l"]] += value
+    return w / w.sum(1, keepdims=True)
+
+
+def _torso(f: Figure, p: Points) -> dict[str, Values]:
+    h, head = f.p.height, f.p.head
+    z = p[:, 2]
+    spine, chest, neck = (f.joint(n)[2] for n in ("spine", "chest", "neck"))
+    a = ramp(z, spine - 0.055 * h, spine + 0.055 * h)
+    b = ramp(z, chest - 0.06 * h, chest + 0.06 * h)
+    c = ramp(z - 0.25 * np.abs(p[:, 1]), neck - 0.016 * h, neck + 0.030 * h)
+    tilt = z - (f.p.chin + 0.06 * head) + 0.9 * (p[:, 0] - f.joint("head")[0])
+    d = ramp(tilt, -0.14 * head, 0.10 * head)
+    shoulder = f.joint("upperarm_l")
+    clavicle = ramp(p[:, 1], 0.25 * shoulder[1], 0.85 * shoulder[1]) * ramp(z, f.level(0.72), f.level(1.0))
+    upper = b * (1 - c)
+    return {
+        "hips": 1 - a,
+        "spine": a * (1 - b),
+        "chest": a * upper * (1 - clavicle),
+        "clavicle_l": a * upper * clavicle,
+        "neck": a * b * c * (1 - d),
+        "head": a * b * c * d,
+    }
+
+
+def _leg(f: Figure, p: Points) -> dict[str, Values]:
+    h, (y, hip), knee, ankle = f.p.height, f.p.hip, f.p.knee, f.p.ankle
+    z = p[:, 2]
+    s = hip - z + 0.35 * np.clip(p[:, 1] - y, -0.06 * h, 0.06 * h)
+    m1, m2 = ramp(s, -0.060 * h, 0.012 * h), ramp(s, -0.010 * h, 0.065 * h)
+    k1, k2 = ramp(knee - z, -0.040 * h, 0.004 * h), ramp(knee - z, -0.004 * h, 0.040 * h)
+    foot = ramp(ankle - z + 0.25 * p[:, 0], -0.030 * h, 0.004 * h)
+    toe_x = f.joint("toe_l")[0]
+    toe = ramp(p[:, 0], toe_x - 0.10 * f.p.foot, toe_x + 0.08 * f.p.foot) * foot
+    return {
+        "half-hip": m1 - m2,
+        "thigh": m2 * (1 - k1),
+        "half-knee": m2 * (k1 - k2),
+        "shin": m2 * k2 * (1 - foot),
+        "foot": m2 * k2 * (foot - toe),
+        "toe": m2 * k2 * toe,
+    }
+
+
+def _arm(f: Figure, p: Points) -> tuple[dict[str, Values], Values]:
+    """Shares of the left arm's joints, and their sum."""
+    h, a, b, k = f.p.height, f.p.upper_arm, f.p.forearm, f.p.hand
+    d = p - f.joint("upperarm_l")
+    u, v, w = (d @ ARM_FRAME.T).T
+    near = 1.0 - ramp(np.hypot(v, w), 0.068 * h, 0.098 * h) * (u < a)
+    s = 0.978 * d[:, 1] - 0.208 * d[:, 2]
+    m1, m2 = ramp(s, -0.022 * h, 0.026 * h) * near, ramp(s, 0.010 * h, 0.066 * h) * near
+    e1, e2 = ramp(u, a - 0.036 * h, a + 0.003 * h), ramp(u, a - 0.003 * h, a + 0.036 * h)
+    t = ramp(u, a + 0.15 * b, a + 0.90 * b)
+    wrist = ramp(u, a + b - 0.018 * h, a + b + 0.014 * h)
+    x, y, z = (u - a - b) / k, v / k, w / k
+    fingers, tips = ramp(x, 0.43, 0.56), ramp(x, 0.68, 0.77)
+    axis = np.array([0.485, 0.275, -0.07])
+    q = np.stack([x - 0.10, y - 0.09, z + 0.045], 1)
+    along = np.clip(q @ axis / (axis @ axis), 0.0, 1.0)
+    off = np.linalg.norm(q - along[:, None] * axis, axis=1)
+    thumb = ramp(along, 0.08, 0.42) * (1 - ramp(off, 0.085, 0.13)) * ramp(y + 0.25 * along, 0.16, 0.28)
+    index = ramp(y - 0.1035 - 0.05 * np.clip(x - 0.46, 0.0, 0.5), -0.006, 0.006)
+    palm = wrist * (1 - thumb)
+    return {
+        "half-shoulder": m1 - m2,
+        "upperarm": m2 * (1 - e1),
+        "half-elbow": m2 * (e1 - e2),
+        "forearm": m2 * e2 * (1 - t) * (1 - wrist),
+        "twist": m2 * e2 * t * (1 - wrist),
+        "hand": m2 * e2 * palm * (1 - fingers),
+        "fingers": m2 * e2 * palm * (fingers - fingers * tips) * (1 - index),
+        "fingertips": m2 * e2 * palm * fingers * tips * (1 - index),
+        "index": m2 * e2 * palm * (fingers - fingers * tips) * index,
+        "indextip": m2 * e2 * palm * fingers * tips * index,
+        "thumb": m2 * e2 * wrist * thumb,
+    }, m1

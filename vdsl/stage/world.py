@@ -305,7 +305,7 @@ class _Builder:
         if not self.floors:
             return
         box = np.array(self.floors)
-        x0, y0, x1, y1 = (*(box[:, :2].min(0) - GROUND_REACH), *(box[:, 2:].max(0) + GROUND_REACH))
+        (x0, y0), (x1, y1) = box[:, :2].min(0) - GROUND_REACH, box[:, 2:].max(0) + GROUND_REACH
         gx, gy = np.meshgrid(np.linspace(x0, x1, 9), np.linspace(y0, y1, 9), indexing="ij")
         vertices = np.stack([gx.ravel(), gy.ravel(), np.full(gx.size, -0.06)], 1)
         i, j = np.meshgrid(np.arange(8), np.arange(8), indexing="ij")

@@ -9,7 +9,7 @@ on a prop in that prop's.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Protocol
 
 from .. import ast
@@ -191,12 +191,12 @@ def _room(reader: Reader) -> Room | None:
         else:
             known, where = (ROOM_ENTRIES, "a room") if kind == "room" else (PLACE_ENTRIES, "an area")
             unknown_entry(child, known, where, report)
+    placed = _numbered(placed)
     _check_names([(o.name, o.span) for o in openings] + [(p.name, p.span) for p in placed], report)
     full = size if len(size) == 3 else (*size, 0.0)
     span = entry.head.span.to(entry.values[0].span) if entry.values else entry.span
-    return Room(
-        name, kind, at, full, floor, floor_color, wall_color, tuple(openings), tuple(placed), tuple(spots), span
-    )  # fmt: skip
+    colors = (floor_color, wall_color)
+    return Room(name, kind, at, full, floor, *colors, tuple(openings), tuple(placed), tuple(spots), span)
 
 
 def _call(reader: Reader, default: str) -> ast.Call:
@@ -265,6 +265,7 @@ def _placed(reader: Reader, parent: bool) -> Placed | None:
             unknown_entry(child, PLACE_ENTRIES, "a placed prop", reader.report)
     if not name:
         return None
+    children = _numbered(children)
     _check_names([(c.name, c.span) for c in children], reader.report)
     on_span = next((o.span for o in reader.entry.options if o.name.text == "on"), reader.span)
     return Placed(
@@ -284,6 +285,16 @@ def _placed_node(item: Placed) -> SetNode:
 
 
 # --- checking -----------------------------------------------------------------------
+
+
+def _numbered(items: list[Placed]) -> list[Placed]:
+    """What a ``repeat`` places again and again is called tree, tree_2, tree_3 …"""
+    count: dict[int, int] = {}
+    found = []
+    for item in items:
+        count[item.span.start] = times = count.get(item.span.start, 0) + 1
+        found.append(item if times == 1 else replace(item, name=f"{item.name}_{times}"))
+    return found
 
 
 def _check_names(named: list[tuple[str, Span]], report: Report) -> None:

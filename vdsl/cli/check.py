@@ -1,0 +1,104 @@
+"""``vdsc check``: read and check a storyboard, and say everything that is wrong with it.
+
+Imports the language and the library and nothing heavier. Exit codes: 0 fine, 1 the storyboard has
+errors, 2 usage, 3 the machine failed.
+"""
+
+from __future__ import annotations
+
+import sys
+from dataclasses import dataclass
+from enum import Enum
+from pathlib import Path
+from typing import Annotated, NoReturn
+
+import typer
+
+from ..lang import ast
+from ..lang.check import check as check_script
+from ..lang.diagnostics import Report, nearest
+from ..lang.files import read_source
+from ..lang.ir import Storyboard
+from ..lang.parse import parse
+from ..lang.settings import Settings
+from ..library.loader import Catalog
+from .show import print_report, printable
+
+FINE, WRONG, USAGE, MACHINE = 0, 1, 2, 3
+
+
+class Format(str, Enum):
+    """How findings are printed."""
+
+    text = "text"
+    json = "json"
+
+
+@dataclass(frozen=True)
+class Checked:
+    """What reading a file came to; ``storyboard`` is None where the report has errors."""
+
+    report: Report
+    script: ast.Script | None
+    catalog: Catalog | None
+    storyboard: Storyboard | None
+
+
+def check_file(path: Path, overrides: Settings | None = None) -> Checked:
+    """Read, parse and check a file. Raises OSError where the machine cannot read it."""
+    report = Report()
+    source = read_source(path, report)
+    if source is None:
+        return Checked(report, None, None, None)
+    script, _ = parse(source, report)
+    catalog = Catalog.for_script(script, report)
+    return Checked(report, script, catalog, check_script(script, catalog, report, overrides))
+
+
+def check_or_exit(path: Path, format: str = "text", overrides: Settings | None = None) -> Checked:
+    """As :func:`check_file`, for commands: print what was found, and leave with the right code if it is wrong."""
+    if not path.exists():
+        siblings = [p.name for p in path.parent.glob("*.vds")] if path.parent.is_dir() else []
+        meant = nearest(path.name, siblings)
+        hint = f" Did you mean {path.parent / meant}?" if meant else ""
+        stop(f"there is no file {path}.{hint}", USAGE)
+    if path.is_dir():
+        stop(f"{path} is a folder; name a .vds file in it.", USAGE)
+    try:
+        checked = check_file(path, overrides)
+    except OSError as error:
+        stop(f"cannot read {path}: {error.strerror or error}", MACHINE)
+    except MemoryError:
+        stop(f"not enough memory to read {path}", MACHINE)
+    print_report(checked.report, format, str(path))
+    if checked.storyboard is None:
+        raise typer.Exit(WRONG)
+    return checked
+
+
+def stop(message: str, code: int) -> NoReturn:
+    """Print one line of why, and leave."""
+    print(f"vdsc: {printable(message)}", file=sys.stderr)
+    raise typer.Exit(code)
+
+
+def check(
+    file: Annotated[Path, typer.Argument(help="The storyboard, a .vds file.", show_default=False)],
+    format: Annotated[Format, typer.Option(help="How to print what is found.")] = Format.text,
+) -> None:
+    """Check a storyboard and print every mistake, without making anything.
+
+    Exit code 0 if all is well, 1 if the storyboard has errors.
+    """
+    checked = check_or_exit(file, format.value)
+    if checked.storyboard is not None and format is Format.text:
+        print(f"{file}: {summary(checked.storyboard)}")
+
+
+def summary(storyboard: Storyboard) -> str:
+    """``fine, 2 scenes, 10 lines, 12 shots``"""
+    shots = sum(len(line.shots) for line in storyboard.lines)
+    if not storyboard.lines:
+        return "fine, definitions only"
+    counts = ((len(storyboard.scenes), "scene"), (len(storyboard.lines), "line"), (shots, "shot"))
+    return "fine, " + ", ".join(f"{n} {word}" if n == 1 else f"{n} {word}s" for n, word in counts)

@@ -1,0 +1,176 @@
+"""Diagnostics as a person or a program reads them.
+
+For people: file, line and column, the source line with the span underlined, what is wrong, help, a did
+you mean. Colours on a terminal (unless ``NO_COLOR`` is set), plain text in a pipe. For programs: JSON
+of schema ``vds.diagnostics/1`` (see ``docs/language.md``). Nothing from a script reaches a terminal
+unfiltered: characters that do not print are replaced.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import sys
+import unicodedata
+from collections.abc import Iterable
+from typing import TextIO
+
+from ..lang.diagnostics import Diagnostic, Report
+from ..lang.source import Span
+
+SCHEMA = "vds.diagnostics/1"
+WIDTH = 116
+_STYLES = {
+    "error": "\x1b[1;31m", "warning": "\x1b[1;33m", "note": "\x1b[1;36m", "help": "\x1b[1;32m",
+    "frame": "\x1b[34m", "bold": "\x1b[1m",
+}  # fmt: skip
+_RESET = "\x1b[0m"
+
+
+def print_report(report: Report, format: str = "text", file: str = "", stream: TextIO | None = None) -> None:
+    """Print all findings: ``text`` to the error stream, ``json`` to the output stream, unless told where."""
+    if format == "json":
+        print(as_json(report, file), file=stream or sys.stdout)
+        return
+    stream = stream or sys.stderr
+    text = as_text(report.diagnostics, colour=wants_colour(stream))
+    if text:
+        _write(text, stream)
+
+
+def as_json(report: Report, file: str) -> str:
+    """The document of schema ``vds.diagnostics/1``; lines and columns are 1-based, ends exclusive."""
+    found = report.diagnostics
+    document = {
+        "schema": SCHEMA,
+        "file": file,
+        "errors": sum(d.severity == "error" for d in found),
+        "warnings": sum(d.severity == "warning" for d in found),
+        "diagnostics": [_entry(d) for d in found],
+    }
+    return json.dumps(document, ensure_ascii=False, indent=2)
+
+
+def _entry(d: Diagnostic) -> dict[str, object]:
+    return {
+        "code": d.code,
+        "severity": d.severity,
+        "title": d.title,
+        "message": d.label,
+        **_place(d.span),
+        "help": d.help,
+        "suggestion": d.suggestion,
+        "fix": d.fix,
+        "notes": [{"message": text, **_place(span)} for span, text in d.notes],
+    }
+
+
+def _place(span: Span) -> dict[str, object]:
+    line, column = span.source.position(span.start)
+    end_line, end_column = span.source.position(span.end)
+    return {
+        "file": span.source.name,
+        "line": line + 1,
+        "column": column + 1,
+        "end_line": end_line + 1,
+        "end_column": end_column + 1,
+    }
+
+
+def as_text(diagnostics: Iterable[Diagnostic], colour: bool = False) -> str:
+    """All findings for reading, and a count of them at the end."""
+    found = list(diagnostics)
+    if not found:
+        return ""
+    paint = _Paint(colour)
+    parts = [_one(d, paint) for d in found]
+    errors = sum(d.severity == "error" for d in found)
+    warnings = len(found) - errors
+    counts = [_count(n, word) for n, word in ((errors, "error"), (warnings, "warning")) if n]
+    more = f"; `vdsc explain {found[0].code}` says more" if errors else ""
+    parts.append(paint("error" if errors else "warning", " and ".join(counts)) + more)
+    return "\n\n".join(parts)
+
+
+def _count(number: int, word: str) -> str:
+    return f"{number} {word}" if number == 1 else f"{number} {word}s"
+
+
+class _Paint:
+    def __init__(self, colour: bool) -> None:
+        self.colour = colour
+
+    def __call__(self, style: str, text: str) -> str:
+        return f"{_STYLES[style]}{text}{_RESET}" if self.colour and text else text
+
+
+def _one(d: Diagnostic, paint: _Paint) -> str:
+    lines = [f"{paint(d.severity, f'{d.severity}[{d.code}]')}: {paint('bold', printable(d.title))}"]
+    lines += _excerpt(d.span, d.severity, d.label, "-->", paint)
+    edge = paint("frame", " " * len(str(d.span.line_number)) + " =")
+    if d.suggestion:
+        lines.append(f"{edge} {paint('help', 'did you mean')} `{printable(d.suggestion)}`?")
+    if d.help:
+        lines.append(f"{edge} {paint('help', 'help')}: {printable(d.help)}")
+    for span, text in d.notes:
+        lines.append(f"{edge} {paint('note', 'note')}: {printable(text)}")
+        lines += _excerpt(span, "note", "", "-->", paint)
+    return "\n".join(lines)
+
+
+def _excerpt(span: Span, style: str, label: str, arrow: str, paint: _Paint) -> list[str]:
+    """The place, and its line with the span underlined."""
+    line, column = span.source.position(span.start)
+    gutter = str(line + 1)
+    pad = " " * len(gutter)
+    place = f"{printable(span.source.name)}:{line + 1}:{column + 1}"
+    lines = [f"{pad}{paint('frame', arrow)} {place}"]
+    if not span.source.text:
+        return [*lines, f"{pad} {paint('frame', '=')} {printable(label)}"] if label else lines
+    text = span.source.line(line)
+    end = min(len(text), column + max(1, span.end - span.start))
+    text, start, end = _window(text, column, end)
+    before, marked = _cells(text[:start]), max(1, _cells(text[start:end]))
+    mark = ("^" if style != "note" else "-") * marked
+    lines.append(f"{paint('frame', gutter + ' |')} {printable(text)}")
+    lines.append(
+        f"{paint('frame', pad + ' |')} {' ' * before}{paint(style, (mark + ' ' + printable(label)).rstrip())}"
+    )
+    return lines
+
+
+def _window(text: str, start: int, end: int) -> tuple[str, int, int]:
+    """A long line cut to the part around the span, with where the span is in it."""
+    text = text.expandtabs(1)
+    if len(text) <= WIDTH:
+        return text, start, end
+    left = max(0, min(start - WIDTH // 3, len(text) - WIDTH))
+    right = left + WIDTH
+    head, tail = "…" if left else "", "…" if right < len(text) else ""
+    shift = len(head) - left
+    return head + text[left:right] + tail, start + shift, min(end, right) + shift
+
+
+def printable(text: str) -> str:
+    """Text without anything that could steer a terminal."""
+    return "".join(c if c.isprintable() else " " if c in "\t\n\r" else "\ufffd" for c in text)
+
+
+def _cells(text: str) -> int:
+    """Columns a terminal needs for a text."""
+    return sum(
+        0 if unicodedata.combining(c) else 2 if unicodedata.east_asian_width(c) in "WF" else 1 for c in text
+    )
+
+
+def wants_colour(stream: TextIO) -> bool:
+    """Whether colours are welcome on a stream."""
+    if os.environ.get("NO_COLOR") or os.environ.get("TERM") == "dumb":
+        return False
+    return stream.isatty()
+
+
+def _write(text: str, stream: TextIO) -> None:
+    """Print, also where the stream's encoding knows fewer characters than the script."""
+    encoding = getattr(stream, "encoding", None) or "utf-8"
+    print(text.encode(encoding, "replace").decode(encoding), file=stream)

@@ -8,7 +8,7 @@ from __future__ import annotations
 from dataclasses import dataclass, fields
 
 #: Age words and the years they stand for.
-AGES: dict[str, float] = {"child": 8.0, "teen": 15.0, "adult": 32.0, "elder": 72.0}
+AGES: dict[str, float] = {"child": 8.0, "teen": 15.0, "adult": 32.0, "middle-aged": 50.0, "elder": 72.0}
 #: Build words and their place between thin (0) and heavy (1).
 BUILDS: dict[str, float] = {
     "thin": 0.1,

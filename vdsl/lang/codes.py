@@ -465,6 +465,17 @@ CODES: dict[str, Code] = {
         "(carl walk)",
         "carl at counter\n(carl walk)",
     ),
+    # -- the cast (VDS160-169) -----------------------------------------------------------
+    "VDS160": Code(
+        "unknown feature of a person",
+        "A cast definition sets features: height, build, body, age, skin, eyes, hair, hair-color, facial-hair, "
+        "glasses, top, top-kind, shirt, bottom, bottom-kind and shoes. Nothing else is known of people.",
+    ),
+    "VDS161": Code(
+        "a feature of the wrong size or kind",
+        "Height is a length from 0.7m to 2.4m; build and body go from 0 to 1 or are words; age is in years from 3 to "
+        "110 or a word. All other features are words.",
+    ),
 }
 
 

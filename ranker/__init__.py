@@ -1,0 +1,1 @@
+"""The shot ranking discriminator: model, losses, training and inference. Knows nothing of the language."""

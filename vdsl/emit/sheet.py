@@ -16,7 +16,7 @@ from . import lettering
 from .folder import write_bytes
 from .timeline import film_frames
 from .types import Build, BuiltShot
-from .words import asked_words, camera_words, line_words, seconds_words
+from .words import camera_words, line_words, seconds_words
 
 SHOTS_PER_SHEET = 30
 WIDTH, MARGIN, TEXT, GAP = 1800, 48, 372, 10
@@ -63,7 +63,7 @@ def _draw_head(draw: ImageDraw.ImageDraw, build: Build, page: tuple[int, int]) -
         f"{len(build.shots)} shots",
         seconds_words(film_frames(build), board.fps),
         f"{rate:.3f}".rstrip("0").rstrip(".") + " fps",
-        f"{board.size[0]} × {board.size[1]}",
+        f"{board.size[0]} x {board.size[1]}",
     ]
     if page[1] > 1:
         facts.append(f"sheet {page[0]} of {page[1]}")
@@ -91,7 +91,7 @@ def _draw_words(draw: ImageDraw.ImageDraw, build: Build, built: BuiltShot, numbe
 
 def _facts(build: Build, built: BuiltShot) -> str:
     if not built.takes:
-        return f"no take for {lettering.shortened(asked_words(built.shot), 15, TEXT - 140)}"
+        return f"no take: all {sum(built.rejected.values())} proposals rejected"
     best = built.takes[0]
     focal = best.camera.track.focal
     low, high = f"{focal.min():.0f}", f"{focal.max():.0f}"

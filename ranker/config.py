@@ -1,0 +1,135 @@
+"""Frozen settings of the model and its training, kept as JSON beside the weights.
+
+``PAPER`` is the recipe of the paper's sections 3.3 and 4.1; ``CPU`` reaches something useful from
+scratch on two cores in under half an hour: small pictures first, the full size at the end.
+"""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass, field
+from typing import Any
+
+from .errors import RankerError
+
+BACKBONES = ("resnet50", "resnet18")
+
+
+@dataclass(frozen=True)
+class ModelConfig:
+    """Shape of the network, and the words its class heads know, in the order of their outputs.
+
+    frames, size: pictures of a shot and their side in pixels, at inference
+    contrast: length of the vectors of L_q
+    """
+
+    movements: tuple[str, ...]
+    scales: tuple[str, ...]
+    angles: tuple[str, ...]
+    backbone: str = "resnet50"
+    frames: int = 8
+    size: int = 224
+    contrast: int = 128
+
+
+@dataclass(frozen=True)
+class Phase:
+    """Some epochs at one picture size.
+
+    frames, key_frames: how many of the stored frames the query and the key of L_q see; they never
+    share one, so together they are at most all
+    """
+
+    epochs: int
+    size: int
+    frames: int = 4
+    key_frames: int = 4
+    batch: int = 128
+
+
+@dataclass(frozen=True)
+class TrainConfig:
+    """How to train. The learning rate warms up over ``warmup`` of all steps and falls on a half cosine.
+
+    contrast_weight, class_weight: factors of L_q and L_c (0 leaves the loss out)
+    dictionary, momentum, temperature: K, the momentum encoder's m and τ of L_q
+    smoothing: label smoothing; held_out: share of the clips, by whole groups, kept for evaluation
+    calibration: batches over which batch-norm statistics are taken anew at full size at the end
+    autocast: compute in bfloat16 where the network allows
+    """
+
+    phases: tuple[Phase, ...]
+    learning_rate: float = 1e-3
+    optimizer: str = "adamw"
+    weight_decay: float = 0.05
+    warmup: float = 0.1
+    class_weight: float = 1.0
+    contrast_weight: float = 1.0
+    dictionary: int = 6553
+    momentum: float = 0.999
+    temperature: float = 0.07
+    smoothing: float = 0.0
+    held_out: float = 0.15
+    calibration: int = 40
+    autocast: bool = True
+    augment: bool = True
+    backbone: str = "resnet50"
+    seed: int = 0
+    threads: int = 2
+
+
+PAPER = TrainConfig(phases=(Phase(epochs=60, size=224, batch=128),))
+CPU = TrainConfig(
+    phases=(
+        Phase(epochs=12, size=96, frames=4, key_frames=2, batch=32),
+        Phase(epochs=3, size=160, frames=3, key_frames=2, batch=32),
+        Phase(epochs=2, size=224, frames=3, key_frames=2, batch=32),
+    ),
+    momentum=0.99,
+    contrast_weight=0.25,
+    smoothing=0.05,
+)
+RECIPES = {"paper": PAPER, "cpu": CPU}
+
+
+@dataclass(frozen=True)
+class Card:
+    """What stands in ``config.json`` beside the weights.
+
+    sha256: of the weights file; training: the recipe; data: where the clips came from; measured: on
+    the held-out groups
+    """
+
+    model: ModelConfig
+    sha256: str
+    training: dict[str, Any] = field(default_factory=dict)
+    data: dict[str, Any] = field(default_factory=dict)
+    measured: dict[str, Any] = field(default_factory=dict)
+
+
+def to_json(config: ModelConfig | TrainConfig | Card) -> dict[str, Any]:
+    """The settings as plain values."""
+    return asdict(config)
+
+
+def model_from_json(values: dict[str, Any]) -> ModelConfig:
+    """Read a :class:`ModelConfig`; raises :class:`RankerError` on anything that is not one."""
+    try:
+        words = {k: tuple(str(w) for w in values[k]) for k in ("movements", "scales", "angles")}
+        rest = {k: int(values[k]) for k in ("frames", "size", "contrast")}
+        config = ModelConfig(**words, backbone=str(values["backbone"]), **rest)  # type: ignore[arg-type]
+    except (KeyError, TypeError, ValueError) as error:
+        raise RankerError(f"the ranker's config is not understood: {error!r}") from error
+    if config.backbone not in BACKBONES or not all((config.movements, config.scales, config.angles)):
+        raise RankerError("the ranker's config is not understood: unknown backbone or no classes")
+    if not (1 <= config.frames <= 64 and 16 <= config.size <= 1024 and 1 <= config.contrast <= 4096):
+        raise RankerError("the ranker's config is not understood: sizes out of range")
+    return config
+
+
+def train_from_json(values: dict[str, Any]) -> TrainConfig:
+    """Read a :class:`TrainConfig` as :func:`to_json` wrote it."""
+    try:
+        phases = tuple(Phase(**p) for p in values["phases"])
+        return TrainConfig(**{**values, "phases": phases})
+    except (KeyError, TypeError) as error:
+        raise RankerError(f"the training settings are not understood: {error!r}") from error

@@ -1,0 +1,147 @@
+"""Scores for shot proposals, as fast as the machine allows.
+
+On a CPU the backbone runs with batch norm folded into the convolutions, in bfloat16 and channels
+last, as a frozen graph; fusion and heads stay in float32. Pictures go through in batches of one
+fixed size, the last one padded, so that a shot's score does not depend on its company.
+"""
+
+from __future__ import annotations
+
+import copy
+import warnings
+from collections.abc import Callable
+from dataclasses import dataclass, fields
+from pathlib import Path
+
+import numpy as np
+import torch
+from numpy.typing import NDArray
+from torch import Tensor, nn
+from torch.nn.utils.fusion import fuse_conv_bn_eval
+
+from .config import ModelConfig
+from .errors import RankerError
+from .model import Output, ShotRanker, frame_times, normalised
+from .weights import load_model
+
+#: Shots in a batch. On a CPU more are hardly quicker, and bfloat16 convolutions round differently at
+#: different places of a batch.
+CPU_BATCH, CUDA_BATCH = 1, 32
+CPU_THREADS = 2
+
+
+@dataclass(frozen=True, eq=False)
+class Scores:
+    """What the ranker says of P shots.
+
+    professional: float32 [P], p_b; margin: float32 [P], its logit, which does not saturate
+    movement, scale, angle: float32 [P, classes], p_c in the order of the model's words
+    feature: float32 [P, D], for telling takes apart
+    """
+
+    professional: NDArray[np.float32]
+    margin: NDArray[np.float32]
+    movement: NDArray[np.float32]
+    scale: NDArray[np.float32]
+    angle: NDArray[np.float32]
+    feature: NDArray[np.float32]
+
+
+class Ranker:
+    """A loaded ranker; ``config`` holds its words. Make one with :meth:`load` and keep it."""
+
+    def __init__(self, model: ShotRanker, device: str = "auto") -> None:
+        self.config: ModelConfig = model.config
+        self.device = _device(device)
+        self._batch = CPU_BATCH if self.device.type == "cpu" else CUDA_BATCH
+        if self.device.type == "cpu":
+            torch.set_num_threads(CPU_THREADS)
+        self._model = model.eval().requires_grad_(False).to(self.device)
+        self._times = frame_times(self.config).to(self.device)
+        self._features = self._backbone()
+
+    @classmethod
+    def load(cls, path: str | Path | None = None, device: str = "auto") -> Ranker:
+        """The weights in the folder ``path``, or the shipped ones; raises :class:`RankerError`."""
+        return cls(load_model(path)[0], device)
+
+    def score(self, frames: NDArray[np.uint8]) -> Scores:
+        """Judge shots: uint8 [P, frames, size, size, 3] sRGB, frames evenly spaced from first to last."""
+        size = self.config.size
+        expected = (self.config.frames, size, size, 3)
+        if frames.ndim != 5 or frames.shape[1:] != expected or frames.dtype != np.uint8:
+            raise ValueError(
+                f"expected uint8 [P, {', '.join(map(str, expected))}], got {frames.dtype} {frames.shape}"
+            )
+        parts = [self._score(frames[i : i + self._batch]) for i in range(0, len(frames), self._batch)]
+        if not parts:
+            parts = [self._score(np.zeros((0, *expected), np.uint8))]
+        joined = {f.name: np.concatenate([getattr(p, f.name) for p in parts]) for f in fields(Scores)}
+        return Scores(**joined)
+
+    @torch.inference_mode()
+    def _score(self, frames: NDArray[np.uint8]) -> Scores:
+        count, config = len(frames), self.config
+        padded = frames
+        if count < self._batch:
+            shape = (self._batch - count, *frames.shape[1:])
+            padded = np.concatenate([frames, np.zeros(shape, np.uint8)])
+        pictures = torch.from_numpy(np.ascontiguousarray(padded)).to(self.device)
+        flat = normalised(pictures.flatten(0, 1)).to(torch.bfloat16)
+        features = self._features(flat.contiguous(memory_format=torch.channels_last)).float()
+        features = features.view(self._batch, config.frames, -1)
+        out: Output = self._model.judge(features, self._times.expand(self._batch, -1))
+        return Scores(
+            _array(out.logit.sigmoid()[:count]),
+            _array(out.logit[:count]),
+            _array(out.movement.softmax(1)[:count]),
+            _array(out.scale.softmax(1)[:count]),
+            _array(out.angle.softmax(1)[:count]),
+            _array(out.feature[:count]),
+        )
+
+    def _backbone(self) -> Callable[[Tensor], Tensor]:
+        """The frame encoder for one fixed batch: bfloat16 pictures [N, 3, S, S] -> features [N, D]."""
+        backbone = fold_batch_norm(self._model.backbone).to(torch.bfloat16)
+        backbone = backbone.to(memory_format=torch.channels_last)  # type: ignore[call-overload]
+        if self.device.type != "cpu":
+            return backbone
+        example = torch.zeros(self._batch * self.config.frames, 3, self.config.size, self.config.size)
+        example = example.to(torch.bfloat16).contiguous(memory_format=torch.channels_last)
+        with torch.inference_mode(), warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # tracing is deprecated, and still the quickest here
+            try:
+                graph = torch.jit.optimize_for_inference(
+                    torch.jit.trace(backbone, example, check_trace=False)
+                )
+                graph(example), graph(example)  # the first two runs specialise the graph
+            except RuntimeError:
+                return backbone
+        return graph
+
+
+def fold_batch_norm(backbone: nn.Module) -> nn.Module:
+    """A copy of a ResNet with every batch norm folded into the convolution before it."""
+    names = [name for name, module in backbone.named_modules() if isinstance(module, nn.BatchNorm2d)]
+    folded = copy.deepcopy(backbone).eval()
+    for name in names:
+        parent_name, _, leaf = name.rpartition(".")
+        parent = folded.get_submodule(parent_name)
+        conv = leaf.replace("bn", "conv") if leaf.startswith("bn") else str(int(leaf) - 1)  # or `downsample`
+        before, norm = parent.get_submodule(conv), parent.get_submodule(leaf)
+        assert isinstance(before, nn.Conv2d) and isinstance(norm, nn.BatchNorm2d)
+        parent.add_module(conv, fuse_conv_bn_eval(before, norm))
+        parent.add_module(leaf, nn.Identity())
+    return folded
+
+
+def _array(values: Tensor) -> NDArray[np.float32]:
+    return values.float().cpu().numpy()
+
+
+def _device(name: str) -> torch.device:
+    if name == "auto":
+        return torch.device("cuda" if torch.cuda.is_available() else "cpu")
+    if name == "cuda" and not torch.cuda.is_available():
+        raise RankerError("no CUDA device for the ranker; `--device cpu` uses the processor")
+    return torch.device("cuda" if name == "cuda" else "cpu")

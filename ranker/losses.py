@@ -1,0 +1,50 @@
+"""The three losses of the paper's section 3.3: L = L_b + L_c + L_q."""
+
+from __future__ import annotations
+
+import torch
+from torch import Tensor
+from torch.nn import functional
+
+
+def binary_loss(logit: Tensor, label: Tensor, smoothing: float = 0.0) -> Tensor:
+    """L_b = −[y log p_b + (1 − y) log(1 − p_b)], the mean over [B] (as printed it has a sign slip).
+
+    label: 1 for professional, 0 for not, [B]; smoothing pulls both towards a half
+    """
+    target = label.float() * (1 - smoothing) + smoothing / 2
+    return functional.binary_cross_entropy_with_logits(logit, target)
+
+
+def class_loss(logits: tuple[Tensor, ...], labels: tuple[Tensor, ...], smoothing: float = 0.0) -> Tensor:
+    """L_c = −Σ_c y_c log p_c, summed over movement, scale and angle, each the mean over its known labels.
+
+    logits: [B, classes] each; labels: int64 [B] each, −1 where the class of a shot is not known
+    """
+    total = logits[0].new_zeros(())
+    for scores, label in zip(logits, labels, strict=True):
+        known = label >= 0
+        if known.any():
+            total = total + functional.cross_entropy(scores[known], label[known], label_smoothing=smoothing)
+    return total
+
+
+def contrast_loss(
+    query: Tensor,
+    key: Tensor,
+    others: Tensor,
+    temperature: float,
+    same: Tensor | None = None,
+) -> Tensor:
+    """L_q = −log(exp(z_q·z_+ /τ) / Σ_k exp(z_q·z_k /τ)), the mean over the batch.
+
+    query, key: unit vectors [B, C] of two sets of frames of the same shots; others: the dictionary's
+    [K, C]; the sum runs over the shot's own key and the dictionary, as in MoCo
+    same: bool [B, K], entries of the dictionary that are the query's own shot: left out of the sum
+    """
+    positive = (query * key).sum(1, keepdim=True)
+    negative = query @ others.T
+    if same is not None:
+        negative = negative.masked_fill(same, float("-inf"))
+    scores = torch.cat([positive, negative], 1) / temperature
+    return functional.cross_entropy(scores, torch.zeros(len(query), dtype=torch.long, device=query.device))

@@ -1,0 +1,84 @@
+"""Text actions into clips: :func:`build_clip`.
+
+Assumes a checked :class:`ActionDef`. Guarantees tracks with rising times that start and end at rest
+unless the action holds its last pose.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+
+from runtime.motion.types import (
+    ActionClip,
+    Beat,
+    Gaze,
+    Grasp,
+    Reach,
+    Talk,
+    Tilt,
+    Timeline,
+    Track,
+    Variant,
+)
+from vdsl.lang.definitions.action import POSED, ActionDef, Key, Move, Part
+
+
+def build_clip(action: ActionDef) -> ActionClip:
+    """The clip of an action, with all its variants."""
+    variants = tuple(
+        Variant(v.name, v.duration, timeline(v.part), timeline(v.partner), (v.stride, v.cadence))
+        for v in action.variants
+    )
+    return ActionClip(
+        action.name, variants, action.travel, action.sit, action.needs, action.faces, action.turn, action.along
+    )  # fmt: skip
+
+
+def timeline(part: Part) -> Timeline:
+    """Keys gathered into tracks, moves sorted by kind."""
+    by_kind: dict[str, list[Move]] = defaultdict(list)
+    for move in part.moves:
+        by_kind[move.kind].append(move)
+    return Timeline(
+        tracks=_tracks(part.keys, part.hold),
+        beats=tuple(
+            Beat(m.words[0], m.numbers[0], m.numbers[1], *m.times, m.numbers[2]) for m in by_kind["beat"]
+        ),
+        reaches=tuple(_reach(m) for m in by_kind["reach"]),
+        grasps=tuple(
+            Grasp(m.kind, m.words[0], m.times[0]) for k in ("take", "put", "pass") for m in by_kind[k]
+        ),
+        tilts=tuple(Tilt(m.words[0], m.numbers[0], *m.times) for m in by_kind["tip"]),
+        gazes=tuple(Gaze(m.words[0], *m.times, m.numbers[0]) for m in by_kind["gaze"]),
+        talks=tuple(Talk(*m.times, m.numbers[0]) for m in by_kind["talk"]),
+    )
+
+
+def _reach(move: Move) -> Reach:
+    hand, to, palm = move.words
+    ahead, out, above = move.numbers
+    return Reach(hand, to, *move.times, (ahead, out, above), palm)
+
+
+def _tracks(keys: tuple[Key, ...], hold: bool) -> tuple[Track, ...]:
+    """One track a channel. Additive channels and pose weights begin and end at 0; pose axes keep their
+    first and last value, their defaults where the pose is given without them."""
+    by_channel: dict[str, dict[float, float]] = defaultdict(dict)
+    for key in keys:
+        by_channel[key.channel][key.time] = key.value
+    for channel in list(by_channel):
+        head, axis = channel.split(".")
+        if axis == "weight":
+            for other, default in POSED[head.partition("_")[0]].items():
+                by_channel.setdefault(f"{head}.{other}", {0.0: default})
+    tracks = []
+    for channel in sorted(by_channel):
+        head, axis = channel.split(".")
+        found = by_channel[channel]
+        if axis == "weight" or head.partition("_")[0] not in POSED:
+            found.setdefault(0.0, 0.0)
+            if not hold:
+                found.setdefault(1.0, 0.0)
+        times = tuple(sorted(found))
+        tracks.append(Track(channel, times, tuple(found[t] for t in times)))
+    return tuple(tracks)

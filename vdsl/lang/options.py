@@ -83,11 +83,16 @@ def _wrong_count(option: ast.Option, name: str, report: Report) -> None:
         report.error("VDS052", option.name.span, label=f"`{name}` needs a value", help=f"as in `{example}`")
         return
     extra = option.values[1]
-    comma = isinstance(extra, ast.Name) and words.fold(extra.text) in _READERS
-    report.error(
-        "VDS052", extra.span, label=f"`{name}` takes one value",
-        help=f"put a comma before `{extra.span.text}`" if comma or isinstance(extra, ast.Number) else f"as in `{example}`",
-    )  # fmt: skip
+    report.error("VDS052", extra.span, label=f"`{name}` takes one value", help=_repair(extra, example))
+
+
+def _repair(extra: ast.Value, example: str) -> str:
+    """How a second value was probably meant."""
+    if isinstance(extra, ast.Number) and extra.value < 0:
+        return "a range has two dots, as in `lens 35..85mm`"
+    if isinstance(extra, ast.Number) or (isinstance(extra, ast.Name) and words.fold(extra.text) in _READERS):
+        return f"put a comma before `{extra.span.text}`"
+    return f"as in `{example}`"
 
 
 # -- one reader an option ------------------------------------------------------------------

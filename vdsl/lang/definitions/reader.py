@@ -12,6 +12,7 @@ from collections.abc import Iterable, Mapping
 from typing import TypeVar
 
 from .. import ast
+from ..build import UNITS
 from ..diagnostics import Report, listing, nearest
 from ..evaluate import Bound, bad_word, evaluate, evaluate_point
 from ..source import Span
@@ -253,12 +254,9 @@ class Reader:
                 )
         for index, value in enumerate(self.entry.values):
             if index not in self._values_read:
-                self.report.error(
-                    "VDS031",
-                    value.span,
-                    label=f"`{self.head}` takes no value here",
-                    help="is a comma missing?",
-                )
+                unit = isinstance(value, ast.Name) and value.text in UNITS
+                help = "a unit follows without a space: `(1, 2)m`" if unit else "is a comma missing?"
+                self.report.error("VDS031", value.span, label=f"`{self.head}` takes no value here", help=help)
                 break
         if self.entry.bound and not self._bound_read:
             self.report.error(

@@ -1,0 +1,33 @@
+"""Every row of the table of malformed lines, told by its own example."""
+
+from __future__ import annotations
+
+import pytest
+
+from vdsl.lang import Source, parse
+from vdsl.lang.syntax_errors import FORMS, RULES, Rule
+
+
+def _script(rule: Rule) -> str:
+    """The example as a line of its kind."""
+    if "entry" in rule.starts:
+        return f"prop p {{\n{rule.example}\n}}\n"
+    if "definition_head" in rule.starts:
+        return f"{rule.example} {{\n}}\n"
+    return rule.example + "\n"
+
+
+@pytest.mark.parametrize("rule", RULES, ids=[rule.example for rule in RULES])
+def test_example_gets_its_own_message(rule: Rule) -> None:
+    _, report = parse(Source("x.vds", _script(rule)))
+    found = [(d.code, d.label, d.span.text) for d in report.diagnostics]
+    assert found == [("VDS001", rule.label, rule.marked)]
+
+
+@pytest.mark.parametrize("start", sorted(FORMS))
+def test_the_form_shown_as_right_is_right(start: str) -> None:
+    form = FORMS[start].split(", size")[0].split(" or ")[0].split(", dissolve")[0].replace("…", "")
+    form = f"prop p {{\n{form}\n}}" if start == "entry" else form
+    script, report = parse(Source("x.vds", form + "\n"))
+    assert not report.diagnostics
+    assert len(script.statements) == 1

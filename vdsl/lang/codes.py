@@ -465,6 +465,88 @@ CODES: dict[str, Code] = {
         "(carl walk)",
         "carl at counter\n(carl walk)",
     ),
+    # -- sets and props -------------------------------------------------------------------
+    "VDS100": Code(
+        "unknown colour",
+        "A colour is one of the words (sage, crimson, oak …) or a text with three or six hexadecimal "
+        "digits. Every word is listed in docs/sets.md.",
+        "box (1, 1, 1)m, color crimsn",
+        "box (1, 1, 1)m, color crimson",
+    ),
+    "VDS101": Code(
+        "a size of zero or less",
+        "A solid has an extent in every direction, a room has a floor, an opening has a width. Sizes "
+        "may be computed; what comes out must be above zero with the defaults of the definition.",
+        "box (40cm, 0, 4cm)",
+        "box (40cm, 40cm, 4cm)",
+    ),
+    "VDS102": Code(
+        "repeat without a number of times",
+        "`repeat NAME COUNT { … }` writes its entries COUNT times, with NAME = 0, 1, 2 … in their "
+        "expressions. COUNT is a whole number up to 200.",
+        "repeat i 2.5 { … }",
+        "repeat i 3 { … }",
+    ),
+    "VDS103": Code(
+        "too few points",
+        "A lathe turns a profile of at least two (radius, z) points, an extrusion raises an outline of "
+        "at least three (x, y) points, and a tube follows a path of at least two (x, y, z) points.",
+        "extrude, outline ((0, 0), (1, 0))m, height 1m",
+        "extrude, outline ((0, 0), (1, 0), (0, 1))m, height 1m",
+    ),
+    "VDS104": Code(
+        "not a direction",
+        "`along` says where the shape's own upward axis points: along one of the axes, forwards or "
+        "backwards.",
+        "cylinder 2cm, height 1m, along up",
+        "cylinder 2cm, height 1m, along -y",
+    ),
+    "VDS110": Code(
+        "a set has no parameters",
+        "Props and cast members are made to measure where they are used; a set is one place. Write a "
+        "second set, or place other props.",
+        "set kitchen(width 4m) { … }",
+        "set kitchen { … }",
+    ),
+    "VDS111": Code(
+        "a set of nothing",
+        "A set is made of rooms (with walls) and areas (outdoors); it needs one at least.",
+        "set yard { }",
+        "set yard {\n    area lawn, size (12, 8)m\n}",
+    ),
+    "VDS112": Code(
+        "a name taken twice",
+        "Names in one room, and names of what stands on one thing, are different from each other, so "
+        "that a story can tell which is meant.",
+        "place chair = chair, at (1, 1)m\nplace chair = chair, at (2, 1)m",
+        "place chair_1 = chair, at (1, 1)m\nplace chair_2 = chair, at (2, 1)m",
+    ),
+    "VDS113": Code(
+        "an opening outside its wall",
+        "`at` is the middle of a door or window, measured along the wall from its west or south end. "
+        "The whole opening must lie within the wall, and below its top.",
+        "door, wall north, at 0.2m",
+        "door, wall north, at 0.8m",
+    ),
+    "VDS114": Code(
+        "a door to nowhere",
+        "`to` names the room behind a door. That room has to share the stretch of wall the door is in.",
+        "door, wall east, at 1m, to bathroom",
+        "door, wall east, at 1m, to living",
+    ),
+    "VDS115": Code(
+        "unknown prop",
+        "Props are those of the library and those defined in the script. docs/sets.md lists the library's.",
+        "place lamp = flor_lamp, at (1, 1)m",
+        "place lamp = floor_lamp, at (1, 1)m",
+    ),
+    "VDS116": Code(
+        "nothing to stand it on",
+        "`on NAME` puts a thing on a spot of the prop it stands in the braces of: one the prop's "
+        "definition gives it, such as `top`, or one said in the braces.",
+        "place chair = chair, at (1, 1)m { place cup = cup, on top }",
+        "place table = table, at (1, 1)m { place cup = cup, on top }",
+    ),
     # -- the cast (VDS160-169) -----------------------------------------------------------
     "VDS160": Code(
         "unknown feature of a person",

@@ -15,6 +15,7 @@ from scipy.sparse.csgraph import connected_components
 
 from ..mesh import MATERIALS, Mesh
 from .bake import Volume, key_casters, occlusion_volume
+from .film import to_linear
 from .types import RenderScene, Style
 
 CLUSTER = 64  # triangles
@@ -56,18 +57,6 @@ class Prepared:
     casters: NDArray[np.int32]
     area: NDArray[np.float32]
     volume: Volume
-
-
-def to_linear(color: NDArray[np.floating]) -> NDArray[np.float64]:
-    """sRGB-encoded 0..1 to linear light (IEC 61966-2-1)."""
-    color = np.clip(np.asarray(color, np.float64), 0.0, 1.0)
-    return np.where(color <= 0.04045, color / 12.92, ((color + 0.055) / 1.055) ** 2.4)
-
-
-def to_encoded(light: NDArray[np.floating]) -> NDArray[np.float64]:
-    """Linear light to sRGB-encoded 0..1 (IEC 61966-2-1)."""
-    light = np.clip(np.asarray(light, np.float64), 0.0, 1.0)
-    return np.where(light <= 0.0031308, light * 12.92, 1.055 * light ** (1 / 2.4) - 0.055)
 
 
 def check(scene: RenderScene) -> None:

@@ -13,7 +13,8 @@ from numpy.typing import NDArray
 
 from .bake import light_basis
 from .device import Backend, start
-from .prepare import Prepared, prepare, to_encoded, to_linear
+from .film import film_table, to_encoded, to_linear, unexposed
+from .prepare import Prepared, prepare
 from .types import Camera, Frames, RenderScene, Style, Views
 
 CHUNK_PIXELS = 8_000_000  # pixels in flight; about 30 bytes each
@@ -42,6 +43,7 @@ class Renderer:
         self._shading = shading.shading_kernels(self.style)
         self._finish = finish.finish_kernels(self.style)
         table = np.round(to_encoded(np.arange(4096) / 4095.0) * 255.0).astype(np.uint32)
+        self._film = self.backend.upload(film_table())
         self._table = self.backend.upload(table)
         self._linear = self.backend.upload(to_linear(np.arange(256) / 255.0).astype(np.float32))
         self._buffers: dict[str, Any] = {}
@@ -72,7 +74,7 @@ class Renderer:
         self._arrays["joints"] = up(scene.joints.astype(np.int32))
         self._arrays["weights"] = up(scene.weights.astype(np.float32))
         light = scene.light
-        horizon, zenith = to_linear(np.array(light.backdrop))
+        horizon, zenith = unexposed(to_linear(np.array(light.backdrop)))
         packed = np.concatenate([light.sun, light.sun_color, light.sky, light.ground, horizon, zenith])
         if not np.isfinite(packed).all():
             raise ValueError("Light: not all numbers are finite")
@@ -107,10 +109,13 @@ class Renderer:
             self._set_size = size
             self._set_depth = self._buffer("set_depth", (size * size,), np.float32)
             self._set_coarse = self._buffer("set_coarse", ((size // self._light.BLOCK) ** 2,), np.float32)
-            faces, casters, basis, frame = a["faces"], a["set_casters"], a["basis"], self._set_frame
-            self._light.fit(vertices, faces, casters, 0, basis, SET_TEXEL, size, 1, frame)
+            spare = self._buffer("set_spare", ((size // self._light.BLOCK) ** 2,), np.float32)
+            seen = self.backend.buffer(vertices.shape, np.float32)
+            self._light.fit(
+                vertices, a["basis"], SET_TEXEL, size, len(prepared.vertices), 1, seen, self._set_frame
+            )
             self._light.cast(
-                vertices, faces, casters, 0, basis, frame, size, 1, self._set_depth, self._set_coarse
+                seen, a["faces"], a["set_casters"], 0, self._set_frame, size, 1, self._set_depth, spare, self._set_coarse
             )
         else:
             self._set_size = 1
@@ -214,9 +219,23 @@ class Renderer:
                 self._ball,
             )
             if self._size > 1 and len(scene.casters):
-                same = (self._position, a["faces"], a["casters"], len(scene.vertices), a["basis"])
-                self._light.fit(*same, TEXEL, size, len(palettes), self._frame)
-                self._light.cast(*same, self._frame, size, len(palettes), self._depth, self._coarse)
+                seen = self._buffer("seen", (moments, vertices, 3), np.float32)
+                blur = self._buffer("blur", (moments * blocks**2,), np.float32)
+                self._light.fit(
+                    self._position, a["basis"], TEXEL, size, len(scene.rest), len(palettes), seen, self._frame
+                )
+                self._light.cast(
+                    seen,
+                    a["faces"],
+                    a["casters"],
+                    len(scene.vertices),
+                    self._frame,
+                    size,
+                    len(palettes),
+                    self._depth,
+                    blur,
+                    self._coarse,
+                )
             if self.style.occlusion:
                 spare = self._buffer("spare", (moments * cells,), np.float32)
                 self._light.touch(
@@ -289,7 +308,7 @@ class Renderer:
             self._columns,
             self._rows,
             self._ground,
-            self._table,
+            self._film,
             vis,
             picture,
             edge,

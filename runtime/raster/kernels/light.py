@@ -24,10 +24,9 @@ def across(basis: ti.template(), p):
 
 
 @ti.kernel
-def fit(
-    position: f3, faces: i2, casters: i1, offset: ti.i32, basis: f1, finest: ti.f32, size: ti.i32, moments: ti.i32, frame: f2
-):
-    """Frame [M, 3] of each moment's map: its corner across the light, and texels a metre.
+def fit(position: f3, basis: f1, finest: ti.f32, size: ti.i32, vertices: ti.i32, moments: ti.i32, seen: f3, frame: f2):
+    """Light coordinates of all vertices, and the frame [M, 3] of each moment's map: its corner across the
+    light, and texels a metre.
 
     The corner lies on whole texels and the scale on half octaves, so that the map does not swim.
     """
@@ -35,12 +34,12 @@ def fit(
     for m in range(moments):
         low = vec3(1e30)
         high = vec3(-1e30)
-        for i in range(casters.shape[0]):
-            for k in ti.static(range(3)):
-                v = faces[casters[i], k] - offset
-                q = across(basis, vec3(position[m, v, 0], position[m, v, 1], position[m, v, 2]))
-                low = ti.min(low, q)
-                high = ti.max(high, q)
+        for v in range(vertices):
+            q = across(basis, vec3(position[m, v, 0], position[m, v, 1], position[m, v, 2]))
+            low = ti.min(low, q)
+            high = ti.max(high, q)
+            for a in ti.static(range(3)):
+                seen[m, v, a] = q[a]
         extent = ti.max(high.x - low.x, high.y - low.y, 1e-3)
         texel = finest
         while texel * (size - 8) < extent:
@@ -52,15 +51,15 @@ def fit(
 
 @ti.kernel
 def cast(
-    position: f3,
+    seen: f3,
     faces: i2,
     casters: i1,
     offset: ti.i32,
-    basis: f1,
     frame: f2,
     size: ti.i32,
     moments: ti.i32,
     depth: f1,
+    spare: f1,
     coarse: f1,
 ):
     """Draw the casters into each moment's map, and the coarse map of it."""
@@ -70,26 +69,35 @@ def cast(
         for i in range(size * size):
             depth[base + i] = NOWHERE
         for i in range(casters.shape[0]):
-            corner = ti.Matrix.zero(ti.f32, 3, 3)
-            for k in ti.static(range(3)):
-                v = faces[casters[i], k] - offset
-                q = across(basis, vec3(position[m, v, 0], position[m, v, 1], position[m, v, 2]))
-                corner[k, 0] = (q.x - frame[m, 0]) * frame[m, 2]
-                corner[k, 1] = (q.y - frame[m, 1]) * frame[m, 2]
-                corner[k, 2] = q.z
-            a = vec3(corner[0, 0], corner[0, 1], corner[0, 2])
-            b = vec3(corner[1, 0], corner[1, 1], corner[1, 2])
-            c = vec3(corner[2, 0], corner[2, 1], corner[2, 2])
+            t = casters[i]
+            a = on_map(seen, m, faces[t, 0] - offset, frame)
+            b = on_map(seen, m, faces[t, 1] - offset, frame)
+            c = on_map(seen, m, faces[t, 2] - offset, frame)
             stamp(depth, base, size, a, b, c)
+        # the greatest of each block, then of each block and its neighbours
         blocks = size // BLOCK
         begin = m * blocks * blocks
         for j in range(blocks):
             for i in range(blocks):
                 most = NOWHERE
-                for y in range(ti.max(0, j * BLOCK - 3), ti.min(size, j * BLOCK + BLOCK + 3)):
-                    for x in range(ti.max(0, i * BLOCK - 3), ti.min(size, i * BLOCK + BLOCK + 3)):
+                for y in range(j * BLOCK, j * BLOCK + BLOCK):
+                    for x in range(i * BLOCK, i * BLOCK + BLOCK):
                         most = ti.max(most, depth[base + y * size + x])
+                spare[begin + j * blocks + i] = most
+        for j in range(blocks):
+            for i in range(blocks):
+                most = NOWHERE
+                for y in range(ti.max(0, j - 1), ti.min(blocks, j + 2)):
+                    for x in range(ti.max(0, i - 1), ti.min(blocks, i + 2)):
+                        most = ti.max(most, spare[begin + y * blocks + x])
                 coarse[begin + j * blocks + i] = most
+
+
+@ti.func
+def on_map(seen: ti.template(), m, v, frame: ti.template()):
+    return vec3(
+        (seen[m, v, 0] - frame[m, 0]) * frame[m, 2], (seen[m, v, 1] - frame[m, 1]) * frame[m, 2], seen[m, v, 2]
+    )
 
 
 @ti.func
@@ -129,6 +137,21 @@ def stamp(depth: ti.template(), base, size, a, b, c):
                 w = ti.min(ti.max(row + ti.cast(x, ti.f32) * slope_x, least), most)
                 if w > depth[start + x]:
                     depth[start + x] = w
+
+
+@ti.func
+def unblocked(q, m, frame: ti.template(), size, coarse: ti.template()):
+    """Whether nothing within a block of light coordinates ``q`` can be in its light."""
+    x = (q.x - frame[m, 0]) * frame[m, 2]
+    y = (q.y - frame[m, 1]) * frame[m, 2]
+    out = True
+    if 0 <= x < size and 0 <= y < size:
+        blocks = size // BLOCK
+        i, j = ti.cast(x, ti.i32) // BLOCK, ti.cast(y, ti.i32) // BLOCK
+        out = q.z >= coarse[m * blocks * blocks + j * blocks + i]
+    else:
+        out = x < -BLOCK or y < -BLOCK or x > size + BLOCK or y > size + BLOCK
+    return out
 
 
 @ti.func

@@ -60,15 +60,18 @@ def pattern(material, p, n, blur):
             u = p.y
     if material == 1:  # wood
         if upright:
-            grain = value_noise(u * 34.0, v * 2.2)
-            out = 1.0 + (grain - 0.5) * 0.10 * fade(blur, 0.03)
+            strong = 0.10 * fade(blur, 0.03)
+            if strong > 0:
+                out = 1.0 + (value_noise(u * 34.0, v * 2.2) - 0.5) * strong
         else:
             row = v / 0.13
             line = ti.floor(row)
             along = u / 1.3 + hashed(ti.cast(line, ti.i32), 7)
             tone = hashed(ti.cast(line, ti.i32), ti.cast(ti.floor(along), ti.i32))
-            grain = value_noise(u * 2.4 + 13.0 * line, v * 46.0)
-            out = 1.0 + (tone - 0.5) * 0.13 * fade(blur, 0.13) + (grain - 0.5) * 0.07 * fade(blur, 0.022)
+            out = 1.0 + (tone - 0.5) * 0.13 * fade(blur, 0.13)
+            strong = 0.07 * fade(blur, 0.022)
+            if strong > 0:
+                out += (value_noise(u * 2.4 + 13.0 * line, v * 46.0) - 0.5) * strong
             gap = ti.max(joint(row, 0.004 / 0.13, blur / 0.13), joint(along, 0.004 / 1.3, blur / 1.3))
             out *= 1.0 - 0.3 * gap
     elif material == 2:  # tile
@@ -93,14 +96,18 @@ def pattern(material, p, n, blur):
         blade = ti.min(ti.max((tuft - 0.62) * 7.0, 0.0), 1.0)
         out = 0.95 + 0.09 * patch - 0.13 * blade * fade(blur, 0.12)
     elif material == 5:  # asphalt
-        speck = value_noise(u * 55.0, v * 55.0)
-        broad = value_noise(u * 0.7, v * 0.7)
-        out = 1.0 + (broad - 0.5) * 0.08 + (speck - 0.5) * 0.16 * fade(blur, 0.02)
+        out = 1.0 + (value_noise(u * 0.7, v * 0.7) - 0.5) * 0.08
+        strong = 0.16 * fade(blur, 0.02)
+        if strong > 0:
+            out += (value_noise(u * 55.0, v * 55.0) - 0.5) * strong
     elif material == 6:  # cloth
-        x, y = u / 0.006, v / 0.006
-        out = 1.0 - 0.05 * fade(blur, 0.006) * (joint(x, 0.4, blur / 0.006) + joint(y, 0.4, blur / 0.006))
+        strong = 0.05 * fade(blur, 0.006)
+        if strong > 0:
+            out = 1.0 - strong * (joint(u / 0.006, 0.4, blur / 0.006) + joint(v / 0.006, 0.4, blur / 0.006))
     elif material == 9:  # carpet
-        out = 1.0 + (value_noise(u * 80.0, v * 80.0) - 0.5) * 0.16 * fade(blur, 0.014)
+        strong = 0.16 * fade(blur, 0.014)
+        if strong > 0:
+            out = 1.0 + (value_noise(u * 80.0, v * 80.0) - 0.5) * strong
         out *= 1.0 + (value_noise(u * 3.0, v * 3.0) - 0.5) * 0.05
     elif material == 10:  # concrete
         broad = value_noise(u * 1.3, v * 1.3) * 0.65 + value_noise(u * 5.1, v * 5.1) * 0.35

@@ -9,12 +9,14 @@ from types import SimpleNamespace
 
 import taichi as ti
 
+from ..film import FILM_RANGE, FILM_SIZE
 from ..types import Style
 from .geometry import f1, f2, f3, i1, i2, item3, part3, row3, u32s, u64s, vec3
-from .light import across, lit
+from .light import BLOCK, across, lit, unblocked
 from .pattern import glazed, pattern
 
 NOTHING = 0xFFFF0000
+STRETCH = 8  # pixels
 
 
 @ti.func
@@ -51,6 +53,17 @@ def encode(light, table: ti.template()):
     g = ti.cast(ti.min(ti.max(light.y, 0.0), 1.0) * 4095.0 + 0.5, ti.i32)
     b = ti.cast(ti.min(ti.max(light.z, 0.0), 1.0) * 4095.0 + 0.5, ti.i32)
     r8, g8, b8 = table[r], table[g], table[b]
+    return r8 | (g8 << 8) | (b8 << 16) | (((r8 * 5 + g8 * 9 + b8 * 2) >> 4) << 24)
+
+
+@ti.func
+def developed(light, film: ti.template()):
+    """Scene light to packed 8-bit sRGB and luma, through the film's table."""
+    limit = ti.static(FILM_RANGE)
+    scale = ti.static((FILM_SIZE - 1) / FILM_RANGE)
+    r8 = film[ti.cast(ti.min(ti.max(light.x, 0.0), limit) * scale + 0.5, ti.i32)]
+    g8 = film[ti.cast(ti.min(ti.max(light.y, 0.0), limit) * scale + 0.5, ti.i32)]
+    b8 = film[ti.cast(ti.min(ti.max(light.z, 0.0), limit) * scale + 0.5, ti.i32)]
     return r8 | (g8 << 8) | (b8 << 16) | (((r8 * 5 + g8 * 9 + b8 * 2) >> 4) << 24)
 
 
@@ -151,7 +164,7 @@ def shading_kernels(style: Style) -> SimpleNamespace:
         columns: ti.i32,
         rows: ti.i32,
         ground: f1,
-        table: u32s,
+        film: u32s,
         vis: u64s,
         picture: u32s,
         edge: u32s,
@@ -159,7 +172,7 @@ def shading_kernels(style: Style) -> SimpleNamespace:
         width: ti.i32,
         height: ti.i32,
     ):
-        """light: sun 3, sun colour 3, sky 3, ground 3, horizon 3, zenith 3 (linear)"""
+        """light: sun 3, sun colour 3, sky 3, ground 3, horizon 3, zenith 3 (scene light)"""
         for line in range(views * height):
             n = line // height
             y = line % height
@@ -181,21 +194,25 @@ def shading_kernels(style: Style) -> SimpleNamespace:
             last = -1
             p0, g1, g2 = vec3(0), vec3(0), vec3(0)
             n0, n1, n2 = vec3(0), vec3(0), vec3(0)
-            base = vec3(0)
-            surface = ti.u32(0)
+            base, ambient = vec3(0), vec3(0)
+            facing = 0.0
+            mark = ti.u32(NOTHING)
             flat = False
             moves = False
             material = 0
-            slant = 1.0
-            shade, shade_step = 1.0, 0.0
-            known = 0
+            slant = 0.0
+            # light along a stretch of one triangle of the set: its ends are looked up, the rest lies between
+            shade, shade_step, shade_end = 1.0, 0.0, 1.0
+            clear, clear_end = False, False
+            known, joined = 0, False
             for x in range(width):
                 at = line * width + x
                 key = vis[at]
                 ray = first + step * ti.cast(x, ti.f32)
                 out = vec3(0)
-                mark = ti.u32(NOTHING)
                 if key == 0:
+                    last = -1
+                    mark = ti.u32(NOTHING)
                     up = ray.z / ray.norm()
                     out = horizon + (zenith - horizon) * ti.min(ti.max(up * 1.6, 0.0), 1.0)
                 else:
@@ -203,8 +220,12 @@ def shading_kernels(style: Style) -> SimpleNamespace:
                     depth = 1.0 / ti.bit_cast(ti.cast(key >> 32, ti.u32), ti.f32)
                     if t != last:
                         last = t
-                        known = 0
+                        known = x
+                        joined = False
                         a, b, c = faces[t, 0], faces[t, 1], faces[t, 2]
+                        flat = (info[t, 1] >> 8) & 1
+                        material = info[t, 1] & 255
+                        base = row3(color, t)
                         moves = t >= static_faces
                         q1, q2 = vec3(0), vec3(0)
                         if moves:
@@ -212,86 +233,122 @@ def shading_kernels(style: Style) -> SimpleNamespace:
                             q1 = item3(position, m, b - static_vertices) - p0
                             q2 = item3(position, m, c - static_vertices) - p0
                             n0 = item3(normal, m, a - static_vertices)
-                            n1 = item3(normal, m, b - static_vertices) - n0
-                            n2 = item3(normal, m, c - static_vertices) - n0
+                            if not flat:
+                                n1 = item3(normal, m, b - static_vertices) - n0
+                                n2 = item3(normal, m, c - static_vertices) - n0
                         else:
                             p0 = row3(vertices, a)
                             q1 = row3(vertices, b) - p0
                             q2 = row3(vertices, c) - p0
                             n0 = row3(normals, a)
-                            n1 = row3(normals, b) - n0
-                            n2 = row3(normals, c) - n0
+                            if not flat:
+                                n1 = row3(normals, b) - n0
+                                n2 = row3(normals, c) - n0
                         cross = q1.cross(q2)
-                        inverse = 1.0 / ti.max(cross.norm_sqr(), 1e-20)
-                        g1 = q2.cross(cross) * inverse
-                        g2 = cross.cross(q1) * inverse
                         # seen from behind: turn the normal to the eye
                         if cross.dot(p0 - eye) > 0:
                             n0, n1, n2 = -n0, -n1, -n2
-                        base = row3(color, t)
-                        surface = ti.cast(info[t, 0], ti.u32) << 16
-                        flat = (info[t, 1] >> 8) & 1
-                        material = info[t, 1] & 255
-                        # how much longer a pixel is on the surface than across it, tamed at grazing angles
-                        cosine = ti.abs(cross.dot(ray)) / ti.max(ray.norm() * cross.norm(), 1e-12)
-                        slant = 1.0 / ti.max(ti.sqrt(cosine), 0.15)
+                        if not flat:
+                            inverse = 1.0 / ti.max(cross.norm_sqr(), 1e-20)
+                            g1 = q2.cross(cross) * inverse
+                            g2 = cross.cross(q1) * inverse
+                        else:
+                            facing = toned(n0.dot(sun))
+                            ambient = under + (sky - under) * (n0.z * 0.5 + 0.5)
+                        mark = (ti.cast(info[t, 0], ti.u32) << 16) | pack_normal(n0)
+                        if material != 0 and not moves:
+                            # how much longer a pixel is on the surface than across it, tamed at grazing angles
+                            cosine = ti.abs(cross.dot(ray)) / ti.max(ray.norm() * cross.norm(), 1e-12)
+                            slant = 1.0 / (ti.max(ti.sqrt(cosine), 0.15) * view[n, 13])
                     where = eye + ray * depth
                     nn = n0
                     if not flat:
                         d = where - p0
                         b1 = ti.min(ti.max(d.dot(g1), 0.0), 1.0)
                         b2 = ti.min(ti.max(d.dot(g2), 0.0), 1.0)
-                        nn = (n0 + n1 * b1 + n2 * b2).normalized(1e-12)
+                        nn = n0 + n1 * b1 + n2 * b2
+                        nn *= 1.0 / ti.sqrt(ti.max(nn.norm_sqr(), 1e-12))
+                        mark = (mark & ti.u32(0xFFFF0000)) | pack_normal(nn)
+                        facing = toned(nn.dot(sun))
+                        ambient = under + (sky - under) * (nn.z * 0.5 + 0.5)
                     if material == 7:
                         out = glazed(base, ray, where)
                     elif material == 8:
-                        out = base * 1.25 + 0.08
+                        out = base * 2.0 + 0.2
                     else:
-                        key_light = toned(nn.dot(sun))
-                        ambient = under + (sky - under) * (nn.z * 0.5 + 0.5)
-                        if ti.static(shadows):
-                            if key_light > 0:
-                                q = across(basis, where + nn * 0.02) + vec3(0, 0, 0.006)
-                                through = lit(q, m, frame, size, depth_map, coarse)
-                                if through > 0:
-                                    q += vec3(0, 0, 0.01)
-                                    through *= lit(q, 0, set_frame, set_size, set_depth, set_coarse)
-                                key_light *= through
+                        key_light = facing
                         albedo = base
                         if not moves:
-                            if ti.static(occlusion):
-                                if x >= known:
-                                    # sample at both ends of the next few pixels of this triangle
-                                    end = x
-                                    while end < width - 1 and end < x + 8 and ti.cast(vis[at + end - x + 1], ti.u32) == ti.cast(key, ti.u32):
-                                        end += 1
-                                    shade = sheltered(where, nn, m, corner, volume_low[3], nx, ny, nz, values, floor, columns, rows, ground)
-                                    known = end + 1
-                                    shade_step = 0.0
-                                    if end > x:
-                                        depth_end = 1.0 / ti.bit_cast(ti.cast(vis[at + end - x] >> 32, ti.u32), ti.f32)
-                                        there = eye + (first + step * ti.cast(end, ti.f32)) * depth_end
-                                        other = sheltered(there, nn, m, corner, volume_low[3], nx, ny, nz, values, floor, columns, rows, ground)
-                                        shade_step = (other - shade) / ti.cast(end - x, ti.f32)
-                                        known = end
-                                ambient *= shade
-                                key_light *= 0.5 + 0.5 * shade
-                                shade += shade_step
+                            if x >= known:
+                                end = x
+                                last_x = ti.min(width - 1, x + STRETCH)
+                                while end < last_x and ti.cast(vis[at + end - x + 1], ti.u32) == ti.cast(key, ti.u32):
+                                    end += 1
+                                if joined:
+                                    shade = shade_end
+                                    clear = clear_end
+                                else:
+                                    if ti.static(occlusion):
+                                        shade = sheltered(
+                                            where, nn, m, corner, volume_low[3], nx, ny, nz, values, floor, columns, rows, ground
+                                        )
+                                    if ti.static(shadows):
+                                        q = across(basis, where + nn * 0.02)
+                                        clear = unblocked(q, m, frame, size, coarse) and unblocked(
+                                            q, 0, set_frame, set_size, set_coarse
+                                        )
+                                shade_step = 0.0
+                                known = end
+                                joined = end > x
+                                if joined:
+                                    depth_end = 1.0 / ti.bit_cast(ti.cast(vis[at + end - x] >> 32, ti.u32), ti.f32)
+                                    there = eye + (first + step * ti.cast(end, ti.f32)) * depth_end
+                                    if ti.static(occlusion):
+                                        shade_end = sheltered(
+                                            there, nn, m, corner, volume_low[3], nx, ny, nz, values, floor, columns, rows, ground
+                                        )
+                                        shade_step = (shade_end - shade) / ti.cast(end - x, ti.f32)
+                                    if ti.static(shadows):
+                                        q = across(basis, there + nn * 0.02)
+                                        clear_end = unblocked(q, m, frame, size, coarse) and unblocked(
+                                            q, 0, set_frame, set_size, set_coarse
+                                        )
+                                        reach = (there - where).norm()
+                                        clear = clear and clear_end and (
+                                            reach * ti.max(frame[m, 2], set_frame[0, 2]) < BLOCK
+                                        )
+                                else:
+                                    known = x + 1
+                            if ti.static(shadows):
+                                if key_light > 0 and not clear:
+                                    q = across(basis, where + nn * 0.02)
+                                    key_light *= lit(q, m, frame, size, depth_map, coarse)
+                                    q.z += 0.01
+                                    key_light *= lit(q, 0, set_frame, set_size, set_depth, set_coarse)
+                            key_light = 0.3 + 0.7 * key_light * (0.7 + 0.3 * shade)
                             if material != 0:
-                                albedo *= pattern(material, where, nn, depth * slant / view[n, 13])
-                        out = albedo * (ambient + sun_color * key_light)
+                                albedo *= pattern(material, where, nn, depth * slant)
+                            out = albedo * (ambient * shade + sun_color * key_light)
+                            shade += shade_step
+                        else:
+                            if ti.static(shadows):
+                                if key_light > 0:
+                                    q = across(basis, where + nn * 0.02)
+                                    q.z += 0.006
+                                    key_light *= lit(q, m, frame, size, depth_map, coarse)
+                                    key_light *= lit(q, 0, set_frame, set_size, set_depth, set_coarse)
+                            out = albedo * (ambient + sun_color * (0.1 + 0.9 * key_light))
                     haze = ti.min(ti.max((depth - 2.0) * 0.04, 0.0), 1.0)
                     haze *= 0.15 if moves else 0.36
                     out += (horizon - out) * haze
-                    mark = surface | pack_normal(nn)
-                picture[at] = encode(out, table)
+                picture[at] = developed(out, film)
                 edge[at] = mark
 
     @ti.func
     def sheltered(where, nn, m, corner, inverse, nx, ny, nz, values: ti.template(), floor: ti.template(), columns, rows, ground: ti.template()):
         """Share of the ambient light that reaches a point of the set."""
         near = area_near(where + nn * 0.24, corner, inverse, nx, ny, nz, values)
-        out = 1.0 - 0.42 * ti.min(ti.max((near - 0.36) * 0.9, 0.0), 1.0)
+        out = 1.0 - 0.34 * (1.0 - ti.exp(-1.3 * ti.max(near - 0.38, 0.0)))
         if nn.z > 0.7 and where.z < 0.2:
             out *= 1.0 - 0.5 * (1.0 - ti.exp(-1.6 * standing_near(where, m, floor, columns, rows, ground)))
         return out

@@ -152,6 +152,24 @@ def reachable(
     return bool(labels[a] == labels[b])
 
 
+def obstacles(world: World, start: tuple[float, float], goal: tuple[float, float]) -> list[int]:
+    """Ids of the objects that would have to go for a way from start to goal, in its order; −1 for walls."""
+    grid = grid_of(world)
+    cost = np.where(grid.clearance >= BODY_RADIUS, 1.0, np.where(grid.owner >= -1, 60.0, 900.0))
+    first, last = grid.cell(np.array(start)), grid.cell(np.array(goal))
+    cells = _shortest(cost, (int(first[0]), int(first[1])), (int(last[0]), int(last[1])))
+    if cells is None:
+        return []
+    reach = int(BODY_RADIUS / CELL)
+    found: list[int] = []
+    for i, j in cells[cost[cells[:, 0], cells[:, 1]] > 1.0]:
+        near = grid.owner[max(0, i - reach) : i + reach + 1, max(0, j - reach) : j + reach + 1]
+        found.extend(int(k) for k in np.unique(near) if k >= 0)
+        if grid.owner[i, j] == -2:
+            found.append(-1)
+    return list(dict.fromkeys(found))
+
+
 def find_paths(
     world: World,
     start: tuple[float, float],

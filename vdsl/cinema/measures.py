@@ -17,6 +17,7 @@ from runtime.world import World
 
 from . import space
 from .framing import Array
+from .score import geometry_score as geometry_score
 from .sight import backdrop_gaps, clear_lines, clear_of_people, hidden_walls
 from .sizes import PAPER_RADIUS, Size
 from .subject import SIGHT, Subject

@@ -25,6 +25,7 @@ from ..cinema.space import Stage, stage_of
 from ..cinema.subject import Subject, person, place, thing
 from ..cinema.track import CameraTrack
 from ..lang.ir import Shot, Target
+from ..library import Catalog
 from .drawing import draw, generator
 from .rejection import REASONS, SOFT, reasons
 from .shooting import Shooting, shoot
@@ -41,6 +42,7 @@ class Filming:
 
     skeletons: of everyone in it; fps: frames a second; rig: cinema or paper; aspect: picture width/height
     room: path of the room an establishing shot shows, () for the whole set
+    catalog: where the actions of story lines are defined; cameras alone need none
     """
 
     world: World
@@ -50,6 +52,7 @@ class Filming:
     rig: str = "cinema"
     aspect: float = 16 / 9
     room: tuple[str, ...] = ()
+    catalog: Catalog | None = None
 
     @property
     def sensor(self) -> tuple[float, float]:

@@ -1,0 +1,295 @@
+"""Names of a story to points of its world: where a hand goes, where eyes rest, where one stands to do it."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from runtime.motion.types import TargetPoint
+from runtime.nav import BODY_RADIUS, Discs, grid_of, nearest_free, reachable
+from runtime.world import Spot, World, WorldObject
+
+from ..lang.ir import Target
+from ..lang.source import Source, Span
+from .cameras import find_object
+from .state import SceneState, room_middle
+
+ARM = 0.75  # metres on the floor within which a hand reaches a thing
+TALKING = 0.88  # metres between two people face to face
+_EYES = 0.93  # of the standing height
+_BESIDE = 0.16  # metres between things on a table top
+
+Point = tuple[float, float, float]
+
+
+@dataclass(frozen=True)
+class Stop:
+    """A place on the floor to stand at, metres, and the heading to have there, radians."""
+
+    x: float
+    y: float
+    heading: float
+
+
+def target_point(target: Target, state: SceneState, near: Point, height: float = 1.65) -> TargetPoint:
+    """What a target is to hands and eyes, seen by somebody whose floor point is ``near``.
+
+    height: standing height of the character, where the target is one
+    """
+    if target.kind == "character":
+        return _person_point(target.path[-1], state, near, height)
+    item = find_object(state.world, target)
+    if target.kind == "spot" and item is not None:
+        spot = item.spot(target.path[-1])
+        if spot is not None:
+            return _spot_point(spot)
+    if item is None or item.kind in ("room", "area"):
+        x, y = room_middle(state) if item is None else _middle(item)
+        return TargetPoint((x, y, 0.0), (x, y, 1.2))
+    return _object_point(item, state, near)
+
+
+def object_target(item: WorldObject) -> Target:
+    """An object as a target nobody wrote."""
+    return Target("object", item.path, item.path[-1], Span(Source("<set>", ""), 0, 0))
+
+
+def _middle(item: WorldObject) -> tuple[float, float]:
+    spot = item.spot("middle")
+    point = spot.position if spot is not None else item.centre
+    return point[0], point[1]
+
+
+def _spot_point(spot: Spot) -> TargetPoint:
+    x, y, z = spot.position
+    seat = spot.position if spot.name.startswith("seat") else None
+    return TargetPoint(spot.position, (x, y, z if z > 0.3 else 1.2), facing=spot.facing, seat=seat)
+
+
+def _person_point(name: str, state: SceneState, near: Point, height: float) -> TargetPoint:
+    actor = state.actors[name]
+    x, y, z = actor.position
+    eyes = z + _EYES * height
+    if actor.posture == "sitting":
+        eyes = (actor.seat[2] if actor.seat else z + 0.45) + 0.43 * height
+    away = max(math.hypot(near[0] - x, near[1] - y), 1e-6)
+    reach = min(0.3, away / 2)
+    hand = (x + (near[0] - x) / away * reach, y + (near[1] - y) / away * reach, eyes - 0.33 * height)
+    return TargetPoint(hand, (x, y, eyes), character=name)
+
+
+def _object_point(item: WorldObject, state: SceneState, near: Point) -> TargetPoint:
+    prop = state.props.get(item.id)
+    if prop is not None:
+        matrix = prop.world_from_object
+        grip = matrix[:3, :3] @ prop.grip + matrix[:3, 3]
+        if prop.holder is not None and prop.holder[0] in state.actors:
+            x, y, _ = state.actors[prop.holder[0]].position
+            at: Point = (x, y, float(grip[2]) if grip[2] > 0.4 else 1.1)
+        else:
+            at = (float(grip[0]), float(grip[1]), float(grip[2]))
+        return TargetPoint(at, at, object=item.id)
+    seat = next((s for s in item.spots if s.name.startswith("seat")), None)
+    stand = _best_stand(item, near)
+    centre = item.centre
+    grip_spot = item.spot("grip")
+    top = min(
+        (s for s in item.spots if s.name.startswith("top")),
+        key=lambda s: math.hypot(s.position[0] - near[0], s.position[1] - near[1]),
+        default=None,
+    )
+    if grip_spot is not None:
+        contact = grip_spot.position
+    elif top is not None:
+        contact = _free_top(item, top, state, stand, near)
+    else:
+        contact = (centre[0], centre[1], min(centre[2], 1.1))
+    gaze = centre if top is None else (centre[0], centre[1], top.position[2])
+    facing = seat.facing if seat is not None else (stand.facing if stand is not None else None)
+    return TargetPoint(contact, gaze, facing=facing, seat=seat.position if seat is not None else None)
+
+
+def _best_stand(item: WorldObject, near: Point) -> Spot | None:
+    stands = [s for s in item.spots if s.name.startswith("stand")]
+    return min(
+        stands,
+        key=lambda s: math.hypot(s.position[0] - near[0], s.position[1] - near[1]),
+        default=None,
+    )
+
+
+def _free_top(item: WorldObject, top: Spot, state: SceneState, stand: Spot | None, near: Point) -> Point:
+    """A place on a top where nothing stands yet, within reach of the one who puts something there."""
+    x, y, z = top.position
+    foot = stand.position if stand is not None else near
+    things = [p.world_from_object[:3, 3] for p in state.props.values() if p.holder is None]
+    options = []
+    for back in (0.42, 0.5, 0.34):
+        for side in (0.0, 0.16, -0.16, 0.3, -0.3, 0.42, -0.42):
+            a = math.atan2(y - foot[1], x - foot[0])
+            px = foot[0] + back * math.cos(a) - side * math.sin(a)
+            py = foot[1] + back * math.sin(a) + side * math.cos(a)
+            inside = (
+                item.low[0] + 0.06 <= px <= item.high[0] - 0.06
+                and item.low[1] + 0.06 <= py <= item.high[1] - 0.06
+            )
+            free = all(math.hypot(px - t[0], py - t[1]) > _BESIDE or abs(t[2] - z) > 0.3 for t in things)
+            if inside and free:
+                options.append((px, py, z))
+    return options[0] if options else top.position
+
+
+# --- seats ----------------------------------------------------------------------------------
+
+
+def seats(target: Target, world: World) -> list[Spot]:
+    """The seat spots a target has."""
+    item = find_object(world, target)
+    if item is None:
+        return []
+    found = [s for s in item.spots if s.name.startswith("seat")]
+    if target.kind == "spot":
+        named = [s for s in found if s.name == target.path[-1]]
+        return named
+    return found
+
+
+def seat_of(target: Target | None, state: SceneState, who: str) -> Spot | None:
+    """A seat of the target nobody else sits on; without a target the nearest one of the whole scene."""
+    if target is not None:
+        found = seats(target, state.world)
+    else:
+        found = [s for o in state.world.objects for s in o.spots if s.name.startswith("seat")]
+    taken = [a.seat for name, a in state.actors.items() if name != who and a.seat is not None]
+    free = [s for s in found if all(math.dist(s.position, t) > 0.35 for t in taken)]
+    if who in state.actors:
+        x, y, _ = state.actors[who].position
+        free.sort(key=lambda s: math.hypot(s.position[0] - x, s.position[1] - y))
+    return free[0] if free else None
+
+
+# --- where to stand -------------------------------------------------------------------------
+
+
+def approach(
+    target: Target,
+    state: SceneState,
+    who: str,
+    start: tuple[float, float] | None,
+    taken: Discs = (),
+) -> Stop | None:
+    """Where to stand to be at a target; None when there is no such place joined to ``start``.
+
+    start: where they come from, None for anywhere; taken: places others are about to stand at
+    """
+    people = state.people(but=who) + taken
+    if target.kind == "character":
+        return _before(target.path[-1], state, people, start)
+    item = find_object(state.world, target)
+    if target.kind == "spot" and item is not None:
+        spot = item.spot(target.path[-1])
+        if spot is not None and not spot.name.startswith("seat"):
+            return _at_spot(spot, state.world, people, start, wide=spot.position[2] > 0.2)
+    seat = seat_of(target, state, who)
+    if seat is not None:
+        return _before_seat(seat, state.world, people, start)
+    if item is None or item.kind in ("room", "area"):
+        x, y = room_middle(state) if item is None else _middle(item)
+        return _at_spot(Spot("middle", (x, y, 0.0)), state.world, people, start, wide=True)
+    if item.id in state.props:
+        holder = state.props[item.id].holder
+        if holder is not None and holder[0] in state.actors:
+            return None if holder[0] == who else _before(holder[0], state, people, start)
+        point = target_point(target, state, (0.0, 0.0, 0.0)).position
+        return _beside((point[0], point[1]), state.world, people, start, ARM + 0.1)
+    stand = next(
+        (s for s in item.spots if s.name.startswith("stand") and _usable(s, state.world, people, start)), None
+    )
+    if stand is not None:
+        x, y, _ = stand.position
+        facing = stand.facing if stand.facing is not None else _towards((x, y), item.centre)
+        return Stop(x, y, facing)
+    return _around(item, state.world, people, start)
+
+
+def _towards(a: tuple[float, float], b: tuple[float, ...]) -> float:
+    return math.atan2(b[1] - a[1], b[0] - a[0])
+
+
+def _usable(spot: Spot, world: World, people: Discs, start: tuple[float, float] | None) -> bool:
+    x, y, _ = spot.position
+    clear = float(grid_of(world).with_people(people).clearance_at(_xy(x, y)))
+    return clear >= 0.8 * BODY_RADIUS and (start is None or reachable(world, start, (x, y), people))
+
+
+def _xy(x: float, y: float) -> NDArray[np.float64]:
+    return np.array((x, y))
+
+
+def _at_spot(
+    spot: Spot, world: World, people: Discs, start: tuple[float, float] | None, wide: bool
+) -> Stop | None:
+    x, y, _ = spot.position
+    found = nearest_free(world, (x, y), people, within=1.2 if wide else 0.6, start=start)
+    if found is None:
+        return None
+    moved = math.hypot(found[0] - x, found[1] - y)
+    if moved < 0.05:
+        found = (x, y)
+    facing = spot.facing if spot.facing is not None else (_towards(found, (x, y)) if moved > 0.05 else 0.0)
+    return Stop(*found, facing)
+
+
+def _beside(
+    point: tuple[float, float], world: World, people: Discs, start: tuple[float, float] | None, within: float
+) -> Stop | None:
+    """The nearest free floor to a point, facing it."""
+    found = nearest_free(world, point, people, within=within, start=start)
+    return None if found is None else Stop(*found, _towards(found, point))
+
+
+def _around(item: WorldObject, world: World, people: Discs, start: tuple[float, float] | None) -> Stop | None:
+    """Free floor nearest to an object's bounds, facing its middle."""
+    centre = item.centre
+    reach = math.hypot(item.high[0] - item.low[0], item.high[1] - item.low[1]) / 2
+    best: Stop | None = None
+    score = math.inf
+    for k in range(16):
+        a = 2 * math.pi * k / 16
+        edge = (
+            min(max(centre[0] + 2 * reach * math.cos(a), item.low[0]), item.high[0]),
+            min(max(centre[1] + 2 * reach * math.sin(a), item.low[1]), item.high[1]),
+        )
+        found = nearest_free(world, edge, people, within=0.8, start=start)
+        if found is not None:
+            away = math.hypot(found[0] - edge[0], found[1] - edge[1])
+            come = math.hypot(found[0] - start[0], found[1] - start[1]) if start is not None else 0.0
+            if away + 0.3 * come < score:
+                best, score = Stop(*found, _towards(found, centre)), away + 0.3 * come
+    return best
+
+
+def _before_seat(seat: Spot, world: World, people: Discs, start: tuple[float, float] | None) -> Stop | None:
+    facing = seat.facing if seat.facing is not None else 0.0
+    x = seat.position[0] + 0.55 * math.cos(facing)
+    y = seat.position[1] + 0.55 * math.sin(facing)
+    found = nearest_free(world, (x, y), people, within=0.7, start=start)
+    return None if found is None else Stop(*found, facing)
+
+
+def _before(name: str, state: SceneState, people: Discs, start: tuple[float, float] | None) -> Stop | None:
+    """Face to face with somebody: in front of them, else as near to that as there is room."""
+    other = state.actors[name]
+    x, y, _ = other.position
+    for turn in (0.0, 0.35, -0.35, 0.7, -0.7, 1.1, -1.1, 1.6, -1.6, 2.2, -2.2, math.pi):
+        for far in (TALKING, TALKING + 0.15, TALKING + 0.35):
+            a = other.heading + turn
+            goal = (x + far * math.cos(a), y + far * math.sin(a))
+            clear = float(grid_of(state.world).with_people(people).clearance_at(_xy(*goal)))
+            if clear >= BODY_RADIUS and (start is None or reachable(state.world, start, goal, people)):
+                return Stop(*goal, _towards(goal, (x, y)))
+    found = nearest_free(state.world, (x, y), people, within=1.6, start=start)
+    return None if found is None else Stop(*found, _towards(found, (x, y)))

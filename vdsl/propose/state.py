@@ -1,0 +1,160 @@
+"""A scene between two lines: who is where, how, holding what; and how it opens."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from runtime.body.skeleton import Skeleton
+from runtime.motion.types import ActorState, PropState
+from runtime.nav import Discs, nearest_free
+from runtime.world import Spot, World, WorldObject
+
+from ..lang.diagnostics import Report
+from ..lang.ir import Placement, Scene, Target
+
+PERSON_RADIUS = 0.22  # how much room somebody else takes up on the floor, metres
+_APART = 0.75  # least distance between people who are placed by default, metres
+
+
+@dataclass(frozen=True, eq=False)
+class SceneState:
+    """A scene at the end of a line.
+
+    actors: by name, in the storyboard's order; props: by object id, every movable thing of the set
+    room: path of the room the scene plays in, () for the whole set
+    """
+
+    world: World
+    actors: dict[str, ActorState]
+    props: dict[int, PropState]
+    room: tuple[str, ...] = ()
+
+    def people(self, but: str | None = None) -> Discs:
+        """Everybody else as obstacles on the floor."""
+        return tuple(
+            (a.position[0], a.position[1], PERSON_RADIUS) for name, a in self.actors.items() if name != but
+        )
+
+
+def opening_state(
+    scene: Scene, world: World, skeletons: Mapping[str, Skeleton], report: Report
+) -> SceneState:
+    """How a scene begins: everybody of ``skeletons`` where the script puts them, or near the middle."""
+    props = {
+        o.id: PropState(np.array(o.world_from_object, float), o.grip or (0.0, 0.0, 0.0))
+        for o in world.objects
+        if o.mesh is not None
+    }
+    actors: dict[str, ActorState] = {}
+    placed = {p.character: p for p in scene.placements}
+    for name in skeletons:
+        if name in placed:
+            state = SceneState(world, dict(actors), props, scene.room)
+            actor = _placed(placed[name], state, report)
+            if actor is not None:
+                actors[name] = actor
+    for name in skeletons:
+        if name not in actors:
+            actors[name] = _by_default(SceneState(world, dict(actors), props, scene.room))
+    ordered = {name: actors[name] for name in skeletons}
+    for placement in scene.placements:
+        if placement.facing is not None and placement.character in ordered:
+            state = SceneState(world, ordered, props, scene.room)
+            ordered[placement.character] = _facing(ordered[placement.character], placement.facing, state)
+    return SceneState(world, ordered, props, scene.room)
+
+
+def _placed(placement: Placement, state: SceneState, report: Report) -> ActorState | None:
+    # Here: places needs this module's state, and placing people needs places.
+    from .places import approach, seat_of
+
+    if placement.posture == "sitting":
+        seat = seat_of(placement.at, state, placement.character)
+        if seat is None:
+            report.error(
+                "VDS171",
+                placement.at.span,
+                label="nobody can sit here"
+                if not _has_seat(placement.at, state)
+                else "somebody sits here already",
+                help="place them at a chair or a sofa (a thing with a `seat` spot), or leave out `sitting`",
+            )
+            return None
+        heading = seat.facing if seat.facing is not None else 0.0
+        x, y, _ = seat.position
+        return ActorState((x, y, 0.0), heading, "sitting", seat.position)
+    stop = approach(placement.at, state, placement.character, start=None)
+    if stop is None:
+        report.error(
+            "VDS172",
+            placement.at.span,
+            label=f"there is no floor free for {placement.character} to stand here",
+            help="place them at something with free floor beside it",
+        )
+        return None
+    if placement.facing is None and placement.at.kind != "spot":
+        middle = room_middle(state)
+        away = math.hypot(middle[0] - stop.x, middle[1] - stop.y)
+        heading = math.atan2(middle[1] - stop.y, middle[0] - stop.x) if away > 0.3 else stop.heading
+        return ActorState((stop.x, stop.y, 0.0), heading)
+    return ActorState((stop.x, stop.y, 0.0), stop.heading)
+
+
+def _has_seat(target: Target, state: SceneState) -> bool:
+    from .places import seats
+
+    return bool(seats(target, state.world))
+
+
+def _facing(actor: ActorState, facing: Target, state: SceneState) -> ActorState:
+    from .places import target_point
+
+    if actor.posture == "sitting":
+        return actor  # a chair decides where one faces
+    gaze = target_point(facing, state, actor.position).gaze
+    dx, dy = gaze[0] - actor.position[0], gaze[1] - actor.position[1]
+    if math.hypot(dx, dy) < 0.05:
+        return actor
+    return ActorState(actor.position, math.atan2(dy, dx), actor.posture, actor.seat, actor.held)
+
+
+def room_of(state: SceneState) -> WorldObject | None:
+    """The room or area the scene plays in, where it is one."""
+    return next((o for o in state.world.objects if state.room and o.path == state.room), None)
+
+
+def room_middle(state: SceneState) -> tuple[float, float]:
+    """A point in the middle of the scene: the room's spot ``middle``, else its centre."""
+    room = room_of(state)
+    if room is not None:
+        spot: Spot | None = room.spot("middle")
+        point = spot.position if spot is not None else room.centre
+        return point[0], point[1]
+    middles = [o.spot("middle") for o in state.world.objects if o.kind in ("room", "area")]
+    found = next((s for s in middles if s is not None), None)
+    if found is not None:
+        return found.position[0], found.position[1]
+    if not state.world.floors:
+        return 0.0, 0.0
+    x0, y0, x1, y1 = max(state.world.floors, key=lambda f: (f[2] - f[0]) * (f[3] - f[1]))
+    return (x0 + x1) / 2, (y0 + y1) / 2
+
+
+def _by_default(state: SceneState) -> ActorState:
+    """A free spot near the middle, facing whoever is there already."""
+    middle = room_middle(state)
+    crowd: Discs = tuple((x, y, _APART - 0.25) for x, y, _ in state.people())
+    spot = nearest_free(state.world, middle, crowd, within=50.0) or nearest_free(
+        state.world, middle, (), within=50.0
+    )
+    x, y = spot if spot is not None else middle
+    others = list(state.actors.values())
+    heading = 0.0
+    if others:
+        nearest = min(others, key=lambda a: math.hypot(a.position[0] - x, a.position[1] - y))
+        heading = math.atan2(nearest.position[1] - y, nearest.position[0] - x)
+    return ActorState((x, y, 0.0), heading)

@@ -1,0 +1,158 @@
+"""Story proposals (section 3.1): every way to act a line, s = (a_n, p_{n,m}), performed.
+
+Assumes a checked line and the state its scene is in. Guarantees that all proposals of a line lead to the
+same state, from which the next line starts, and that the same line in the same state under the same seed
+is performed the same way.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from itertools import product
+
+from runtime.body.skeleton import Skeleton
+from runtime.motion.perform import perform
+from runtime.motion.types import ActionClip, Actor, SceneMotion, Task
+from runtime.nav import Discs
+
+from ..lang.definitions.action import ActionDef
+from ..lang.diagnostics import Report
+from ..lang.ir import Shot, StoryLine
+from ..library import Catalog
+from ..stage.actions import build_clip
+from .cameras import Filming, propose_cameras
+from .drawing import generator
+from .state import SceneState, opening_state
+from .tasks import Errand, disc, errand, speaking
+from .types import Performance, ProposalGrid, StoryProposal
+
+__all__ = ["SceneState", "Told", "advance", "opening_state", "propose", "propose_story", "tell"]
+
+MOST = 6  # story proposals a line: more are ways nobody would tell apart
+_STILL = 4.0  # seconds of a shot in which nobody does anything, where the script does not say
+
+
+@dataclass(frozen=True, eq=False)
+class Told:
+    """A line performed: its story proposals and the state it ends in."""
+
+    proposals: tuple[StoryProposal, ...]
+    end: SceneState
+
+
+def tell(
+    state: SceneState,
+    line: StoryLine,
+    filming: Filming,
+    report: Report | None = None,
+    shot: Shot | None = None,
+    most: int = MOST,
+) -> Told:
+    """Perform a line in up to ``most`` ways.
+
+    shot: whose duration, speed and speech count (the first of the line's if None)
+    What cannot be done is reported and left out: the person idles instead.
+    """
+    report = report if report is not None else Report()
+    shot = shot if shot is not None else (line.shots[0] if line.shots else None)
+    errands = _errands(state, line, filming, shot, report)
+    seed = int(generator(filming.seed, shot.id if shot else "", "performance").integers(2**31))
+    proposals, end = [], state
+    for index, (variant, path) in enumerate(_ways(errands, most)):
+        motion = _perform(state, errands, filming.skeletons, (variant, path), filming.fps, seed, shot)
+        if index == 0:
+            end = replace(state, actors=motion.end_actors, props=motion.end_props)
+        name = next(iter(errands.values())).task.clip.variants[variant].name if errands else "still"
+        proposals.append(_proposal(index, name, path, motion))
+    return Told(tuple(proposals), end)
+
+
+def propose_story(
+    state: SceneState,
+    line: StoryLine,
+    filming: Filming,
+    report: Report | None = None,
+    shot: Shot | None = None,
+) -> tuple[StoryProposal, ...]:
+    """The story proposals of a line: clip variants times paths."""
+    return tell(state, line, filming, report, shot).proposals
+
+
+def advance(
+    state: SceneState, line: StoryLine, catalog: Catalog, filming: Filming, report: Report
+) -> SceneState:
+    """The state a line leaves its scene in; reports what cannot be done."""
+    return tell(state, line, replace(filming, catalog=catalog), report, most=1).end
+
+
+def propose(line: StoryLine, shot: Shot, state: SceneState, filming: Filming) -> ProposalGrid:
+    """S · C proposals of one shot: the line performed, and cameras on it."""
+    return propose_cameras(shot, propose_story(state, line, filming, shot=shot), filming)
+
+
+def _errands(
+    state: SceneState,
+    line: StoryLine,
+    filming: Filming,
+    shot: Shot | None,
+    report: Report,
+) -> dict[str, Errand]:
+    out: dict[str, Errand] = {}
+    taken: Discs = ()
+    for number, beat in enumerate(line.beats):
+        if filming.catalog is None:
+            raise ValueError("propose: story lines need the catalogue their actions are defined in")
+        definition = filming.catalog.get("action", beat.action)
+        if not isinstance(definition, ActionDef) or beat.character not in state.actors:
+            continue
+        clip: ActionClip = build_clip(definition)
+        if number == 0 and shot is not None and shot.say:
+            clip = speaking(clip)
+        found = errand(beat, clip, shot, state, filming.skeletons, taken, report)
+        if found is not None:
+            out[beat.character] = found
+            if found.stop is not None:
+                taken = (*taken, disc(found.stop))
+    return out
+
+
+def _ways(errands: Mapping[str, Errand], most: int) -> list[tuple[int, int]]:
+    """(variant, path) pairs of whoever acts first, those that differ in both before the others."""
+    if not errands:
+        return [(0, 0)]
+    first = next(iter(errands.values()))
+    variants, paths = len(first.task.clip.variants), max(len(first.paths), 1)
+    pairs = sorted(product(range(variants), range(paths)), key=lambda p: (abs(p[0] - p[1]), p))
+    return pairs[:most]
+
+
+def _perform(
+    state: SceneState,
+    errands: Mapping[str, Errand],
+    skeletons: Mapping[str, Skeleton],
+    way: tuple[int, int],
+    fps: float,
+    seed: int,
+    shot: Shot | None,
+) -> SceneMotion:
+    """One performance: the given variant and path, everybody else idling."""
+    variant, path = way
+    tasks: dict[str, Task] = {}
+    for name, item in errands.items():
+        variants = item.task.clip.variants
+        line = item.paths[path % len(item.paths)] if item.paths else None
+        tasks[name] = replace(item.task, variant=variants[variant % len(variants)].name, path=line)
+    actors = {name: Actor(skeletons[name], actor) for name, actor in state.actors.items()}
+    duration = shot.duration if shot is not None else None
+    if duration is None and not tasks:
+        duration = _STILL
+    return perform(actors, tasks, state.props, fps, seed, duration)
+
+
+def _proposal(index: int, variant: str, path: int, motion: SceneMotion) -> StoryProposal:
+    performances = {
+        name: Performance(motion.world_from_joint[name], motion.position[name], motion.heading[name])
+        for name in motion.world_from_joint
+    }
+    return StoryProposal(index, variant, path, motion.frames, performances, motion.props)

@@ -1,0 +1,234 @@
+"""A beat to a task of the engine: what it is aimed at, where one has to stand for it, and the ways there."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from runtime.body.skeleton import Skeleton
+from runtime.motion.types import ActionClip, Talk, TargetPoint, Task, Timeline
+from runtime.nav import BODY_RADIUS, Discs, find_paths, obstacles, reachable
+
+from ..lang.diagnostics import Report
+from ..lang.ir import Beat, Shot, Target
+from .places import ARM, Stop, approach, object_target, seat_of, seats, target_point
+from .state import PERSON_RADIUS, SceneState
+
+_NEAR_ENOUGH = 1.25  # metres between people who can hand each other things or talk without moving
+_STANDS_THERE = 0.2  # metres from the place to stand within which nobody takes a step
+#: Kinds of props one pours from, where the script does not say which.
+_POURERS = ("coffee_pot", "teapot", "kettle", "jug", "pitcher", "bottle", "carton", "watering_can")
+
+
+@dataclass(frozen=True, eq=False)
+class Errand:
+    """What a beat comes to: a task without its way, and the ways there are.
+
+    paths: from where the person is, empty where they stay; fetch: the way to the thing needed first
+    stop: where they end up, None where they stay
+    """
+
+    task: Task
+    paths: tuple[NDArray[np.float64], ...]
+    stop: Stop | None
+
+
+def errand(
+    beat: Beat,
+    clip: ActionClip,
+    shot: Shot | None,
+    state: SceneState,
+    skeletons: Mapping[str, Skeleton],
+    taken: Discs,
+    report: Report,
+    ways: int = 3,
+) -> Errand | None:
+    """The beat as an errand; None (and a diagnostic) where it cannot be done.
+
+    taken: places where others of the same line are about to stand
+    """
+    actor = state.actors[beat.character]
+    target = _point(beat.target, state, actor.position, skeletons)
+    second = _point(beat.second, state, actor.position, skeletons)
+    if clip.needs == "second" and second is None and not actor.held:
+        second = _something_to_pour(target, state, actor.position)
+    if clip.seat == "down":
+        seat = seat_of(beat.target, state, beat.character)
+        if seat is None:
+            _no_seat(beat, state, report)
+            return None
+        target = TargetPoint(seat.position, seat.position, facing=seat.facing, seat=seat.position)
+        if actor.posture == "sitting" and actor.seat and math.dist(actor.seat, seat.position) < 0.3:
+            return Errand(_task(clip, target, second, shot), (), None)
+    where = _where_to(beat, clip, target, second, state)
+    if where is None:
+        return Errand(_task(clip, target, second, shot), (), None)
+    here = (actor.position[0], actor.position[1])
+    stop = approach(where, state, beat.character, here, taken)
+    if stop is None:
+        _unreachable(beat, where, state, here, report)
+        return None
+    if clip.seat != "down" and math.hypot(stop.x - here[0], stop.y - here[1]) < _STANDS_THERE:
+        turn = replace(_task(clip, target, second, shot), arrive_heading=stop.heading)
+        return Errand(turn if actor.posture == "standing" else _task(clip, target, second, shot), (), stop)
+    people = state.people(but=beat.character) + taken
+    paths = find_paths(state.world, here, (stop.x, stop.y), ways, people=people)
+    if not paths:
+        _unreachable(beat, where, state, here, report)
+        return None
+    task = replace(_task(clip, target, second, shot), arrive_heading=stop.heading)
+    return Errand(task, tuple(paths), stop)
+
+
+def _task(
+    clip: ActionClip, target: TargetPoint | None, second: TargetPoint | None, shot: Shot | None
+) -> Task:
+    speed = shot.speed if shot is not None else 1.0
+    duration = shot.duration if shot is not None else None
+    return Task(clip, clip.variants[0].name, None, None, target, second, speed, duration)
+
+
+def _point(
+    target: Target | None,
+    state: SceneState,
+    near: tuple[float, float, float],
+    skeletons: Mapping[str, Skeleton],
+) -> TargetPoint | None:
+    if target is None:
+        return None
+    height = skeletons[target.path[-1]].height if target.kind == "character" else 1.65
+    return target_point(target, state, near, height)
+
+
+def _something_to_pour(
+    target: TargetPoint | None, state: SceneState, near: tuple[float, float, float]
+) -> TargetPoint | None:
+    """The nearest vessel to what is poured into."""
+    at = target.position if target is not None else near
+    best: tuple[float, TargetPoint] | None = None
+    for item in state.world.objects:
+        if item.id in state.props and item.kind in _POURERS and state.props[item.id].holder is None:
+            found = target_point(object_target(item), state, near)
+            away = math.dist(found.position, at)
+            if best is None or away < best[0]:
+                best = (away, found)
+    return best[1] if best is not None and best[0] < 1.5 else None
+
+
+def _touches(clip: ActionClip, word: str) -> bool:
+    """Whether hands go to that place in any variant."""
+    places = {word, "meet"} if word != "meet" else {"meet"}
+    return any(r.to in places for v in clip.variants for r in v.timeline.reaches)
+
+
+def _where_to(
+    beat: Beat, clip: ActionClip, target: TargetPoint | None, second: TargetPoint | None, state: SceneState
+) -> Target | None:
+    """The target one has to go to before the clip, None where one can stay."""
+    actor = state.actors[beat.character]
+    held = {thing for _, thing in actor.held}
+    if clip.travel == "none":
+        return None
+    if clip.seat == "down":
+        return beat.target
+    goes = not any(v.duration > 0 and _plays(v.timeline) for v in clip.variants) or clip.lead
+    if goes and beat.target is not None:
+        return beat.target
+    pairs = ((beat.second, second, "second"), (beat.target, target, "target"))
+    for written, point, word in pairs:
+        if written is None or point is None or (point.object in held and point.object is not None):
+            continue
+        touched = _touches(clip, word) or (clip.needs == word)
+        if not touched and not (point.character and _touches(clip, "meet")):
+            continue
+        away = math.hypot(point.gaze[0] - actor.position[0], point.gaze[1] - actor.position[1])
+        if point.character is None:
+            away = math.hypot(point.position[0] - actor.position[0], point.position[1] - actor.position[1])
+        if away > (_NEAR_ENOUGH if point.character else ARM):
+            return written
+    return None
+
+
+def _plays(timeline: Timeline) -> bool:
+    return bool(timeline.tracks or timeline.reaches or timeline.beats or timeline.gazes or timeline.talks)
+
+
+def speaking(clip: ActionClip) -> ActionClip:
+    """The clip with the mouth moving, for a line that says something."""
+    variants = tuple(
+        v
+        if v.timeline.talks
+        else replace(
+            v, duration=max(v.duration, 0.6), timeline=replace(v.timeline, talks=(Talk(0.04, 0.96),))
+        )
+        for v in clip.variants
+    )
+    return replace(clip, variants=variants)
+
+
+# --- what went wrong ------------------------------------------------------------------------
+
+
+def _no_seat(beat: Beat, state: SceneState, report: Report) -> None:
+    span = beat.target.span if beat.target is not None else beat.span
+    taken = beat.target is not None and bool(seats(beat.target, state.world))
+    report.error(
+        "VDS171",
+        span,
+        label="somebody sits here already" if taken else "nobody can sit here",
+        help=_listing("free seats: ", _free_seats(state, beat.character)),
+    )
+
+
+def _free_seats(state: SceneState, who: str) -> list[str]:
+    names = []
+    for item in state.world.objects:
+        target = object_target(item)
+        if any(s.name.startswith("seat") for s in item.spots) and seat_of(target, state, who) is not None:
+            names.append(item.path[-1])
+    return names
+
+
+def _listing(before: str, names: list[str]) -> str | None:
+    return before + ", ".join(f"`{n}`" for n in names[:6]) if names else None
+
+
+def _unreachable(
+    beat: Beat, target: Target, state: SceneState, here: tuple[float, float], report: Report
+) -> None:
+    """Says what stands in the way, and what can be reached."""
+    people = state.people(but=beat.character)
+    goal = target_point(target, state, (*here, 0.0)).position
+    blocking = obstacles(state.world, here, (goal[0], goal[1]))
+    names = [state.world.objects[i].path[-1] for i in blocking if i >= 0]
+    crowd = [
+        name
+        for name, a in state.actors.items()
+        if name != beat.character and math.hypot(a.position[0] - goal[0], a.position[1] - goal[1]) < 0.7
+    ]
+    what = list(dict.fromkeys(names + crowd))
+    in_the_way = _listing("", what)
+    label = f"{beat.character} cannot get to `{target.written}`"
+    label += f": {in_the_way} in the way" if in_the_way else ": no floor leads there"
+    reach = []
+    for item in state.world.objects:
+        stand = next((s for s in item.spots if s.name.startswith("stand")), None)
+        if stand is not None and item.path != target.path:
+            spot = (stand.position[0], stand.position[1])
+            if reachable(state.world, here, spot, people, BODY_RADIUS):
+                reach.append(item.path[-1])
+    report.error(
+        "VDS170",
+        target.span,
+        label=label,
+        help=_listing(f"{beat.character} can get to ", reach) or f"give {beat.character} room to walk",
+    )
+
+
+def disc(stop: Stop) -> tuple[float, float, float]:
+    """A place somebody is about to stand at, as an obstacle."""
+    return stop.x, stop.y, PERSON_RADIUS

@@ -558,6 +558,21 @@ CODES: dict[str, Code] = {
         "Height is a length from 0.7m to 2.4m; build and body go from 0 to 1 or are words; age is in years from 3 to "
         "110 or a word. All other features are words.",
     ),
+    # -- playing the scene (VDS170-179) ----------------------------------------------------
+    "VDS170": Code(
+        "a target that cannot be reached",
+        "People walk on the floor, around what stands on it and around each other, and need half a metre of room "
+        "to pass. Nothing of that kind leads to this target. The message says what stands in the way, and what can "
+        "be reached from there instead.",
+    ),
+    "VDS171": Code(
+        "no seat here",
+        "One sits on things that have a `seat` spot, one person on each: chairs, sofas, beds, benches.",
+    ),
+    "VDS172": Code(
+        "no room to stand here",
+        "To be placed at something there must be free floor beside it: a circle of half a metre.",
+    ),
 }
 
 

@@ -53,9 +53,10 @@ class BeatReader:
         if not self._fits(node, action, definition, named):
             return None
         first, second = (*named, None, None)[:2]
-        if any(t is not None and t.kind == "character" and t.path[0] == character for t in (first, second)):
-            self.report.error("VDS075", node.span, label=f"{character} cannot do this to themselves")
-            return None
+        for target in named:
+            if target.kind == "character" and target.path[0] == character:
+                self.report.error("VDS075", target.span, label=f"{character} cannot do this to themselves")
+                return None
         return Beat(character, action, first, second, node.span)
 
     # -- who and what ----------------------------------------------------------------

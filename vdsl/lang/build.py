@@ -39,6 +39,8 @@ class Builder:
         self.source = source
         self.offset = offset
         self.report = report
+        #: what was read cannot be used; it is reported
+        self.failed = False
 
     # -- places ----------------------------------------------------------------------
 
@@ -77,6 +79,7 @@ class Builder:
         low = unit.casefold()
         meant = low if low in UNITS else _SPOKEN_UNITS.get(low)
         span = self.span(token)
+        self.failed = self.failed or meant is None
         self.report.error(
             "VDS008",
             Span(self.source, span.start + cut, span.end),

@@ -6,7 +6,6 @@ our own bugs: whatever a writer can type ends up as a :class:`Diagnostic`.
 
 from __future__ import annotations
 
-import difflib
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 
@@ -108,20 +107,43 @@ class Report:
 
 
 def nearest(word: str, candidates: Iterable[str]) -> str | None:
-    """The candidate that was probably meant, or None where nothing is near."""
+    """The candidate that was probably meant, or None where nothing is near.
+
+    Near is: the same but for case and ``_``; few slips of the finger (a third of the letters at most);
+    or the same beginning, four letters or more.
+    """
     folded = {_fold(c): c for c in candidates}
     plain = _fold(word)
     if plain in folded:
         return folded[plain]
-    if len(plain) > 64:
+    if not plain or len(plain) > 64:
         return None
-    close = difflib.get_close_matches(plain, folded, n=1, cutoff=0.6)
-    if close:
-        return folded[close[0]]
-    starts = [
-        c for f, c in folded.items() if len(plain) >= 3 and (f.startswith(plain) or plain.startswith(f))
-    ]
-    return min(starts, key=len) if starts else None
+    slips = {f: _distance(plain, f) for f in folded if abs(len(f) - len(plain)) <= len(plain) // 3 + 1}
+    best = min(slips, key=lambda f: slips[f], default=None)
+    if best is not None and slips[best] <= max(1, len(plain) // 3):
+        return folded[best]
+    alike = [f for f in folded if _same_start(plain, f)]
+    return folded[min(alike, key=lambda f: abs(len(f) - len(plain)))] if alike else None
+
+
+def _same_start(a: str, b: str) -> bool:
+    common = next((i for i, (x, y) in enumerate(zip(a, b, strict=False)) if x != y), min(len(a), len(b)))
+    return common >= 4 or (common >= 3 and common in (len(a), len(b)))
+
+
+def _distance(a: str, b: str) -> int:
+    """Letters added, left out, changed or swapped with their neighbour."""
+    before: list[int] = []
+    row = list(range(len(b) + 1))
+    for i, x in enumerate(a, 1):
+        last, before = before, row
+        row = [i]
+        for j, y in enumerate(b, 1):
+            cost = min(before[j] + 1, row[j - 1] + 1, before[j - 1] + (x != y))
+            if i > 1 and j > 1 and x == b[j - 2] and a[i - 2] == y:
+                cost = min(cost, last[j - 2] + 1)
+            row.append(cost)
+    return row[-1]
 
 
 def _fold(word: str) -> str:

@@ -140,7 +140,7 @@ def cut(source: Source, report: Report) -> list[Line]:
             if blank:
                 c.gap = True
             blank = True
-            if not c.parens or (not c.stack and _STORY_START.match(text, at + 1)):
+            if not c.parens or (not c.stack and (text[c.start] in "(/" or _STORY_START.match(text, at + 1))):
                 c.finish()
             continue
         if first not in " \t\r\f\u00a0" or piece.strip():

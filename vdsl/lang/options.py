@@ -101,6 +101,9 @@ def _repair(extra: ast.Value, example: str) -> str:
 def _lens(value: ast.Value, fps: tuple[int, int], report: Report) -> tuple[float, float] | None:
     ends = (value.low, value.high) if isinstance(value, ast.Range) else (value, value)
     unit = ends[1].unit if isinstance(ends[1], ast.Number) else None
+    if isinstance(value, ast.Range) and unit is None:
+        _needs_unit(value, "mm", "a focal length", report)
+        return None
     found: list[float] = []
     for end in ends:
         if not isinstance(end, ast.Number):
@@ -300,7 +303,7 @@ def _choose(
     return None
 
 
-def _needs_unit(value: ast.Number, unit: str, what: str, report: Report) -> None:
+def _needs_unit(value: ast.Number | ast.Range, unit: str, what: str, report: Report) -> None:
     fix = f"{value.span.text}{unit}"
     report.error("VDS020", value.span, label=f"{what} needs a unit", help=f"write {fix}", fix=fix)
 

@@ -129,7 +129,7 @@ class _Reader:
         except TooDeepError:
             self._too_deep(line)
             return None
-        return node
+        return None if builder.failed else node
 
     def _parse(self, line: Line, start: str) -> Tree | None:
         text = self.source.text[line.start : line.end]
@@ -183,9 +183,12 @@ class _Reader:
         tree = self._parse(line, "entry")
         if tree is None:
             return None
+        builder = Builder(self.source, line.start, self.report)
         try:
-            entry = Builder(self.source, line.start, self.report).entry(tree)
+            entry = builder.entry(tree)
         except TooDeepError:
             self._too_deep(line)
+            return None
+        if builder.failed:
             return None
         return ast.Entry(entry.head, entry.values, entry.bound, entry.options, body, entry.span)

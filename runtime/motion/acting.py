@@ -103,10 +103,9 @@ class Performer:
         support = smooth(self.feet.air[1] - self.feet.air[0], 0.05 * self.fps) * (1 - self.sitting)
         shift = self.sway + c["hips.shift"] + 0.018 * support * (1 - 0.5 * self.run)
         pelvis_turn = -0.13 * stride * (1 - 0.3 * self.run) + c["hips.turn"] + 0.3 * self.twirl
-        lowered = 1.9 * self.sway / 0.05 * 0.04
-        roll = 0.06 * support - lowered * 0.0 + 1.1 * self.sway
+        roll = 0.06 * support + 1.1 * self.sway
         moving = np.clip(self.pace / 1.2, 0, 1)
-        bow = c["body.bow"] + 0.10 * self.run + 0.02 * moving
+        bow = c["body.bow"] + 0.13 * self.run + 0.03 * moving
         transition = self._sit_lean()
         pitch = 0.45 * lean + bow + 0.5 * transition - 0.05 * self.sitting
         accelerate = np.clip(0.03 * self.push, -0.08, 0.12)
@@ -179,7 +178,7 @@ class Performer:
         hip_z = bind[JOINT["thigh_l"]][2]
         leg = hip_z - bind[JOINT["foot_l"]][2]
         above = bind[0][2] - hip_z
-        stand = self.floor + hip_z - 0.012 * self.height
+        stand = self.floor + hip_z - 0.0025 * self.height
         cadence = self.feet.air.sum(axis=0)
         moving = np.clip(np.abs(self.pace) / 1.0, 0, 1)
         walk_bob = moving * (1 - self.run) * (0.016 * (cadence - 0.5) - 0.012)
@@ -191,7 +190,7 @@ class Performer:
         half = bind[JOINT["thigh_l"]][1]
         hips = np.stack([xy + half * across, xy - half * across])
         flat = np.linalg.norm(ankle[..., :2] - hips, axis=-1)
-        reach = 0.992 * leg
+        reach = 0.9975 * leg
         limit = ankle[..., 2] + np.sqrt(np.maximum(reach**2 - flat**2, (0.3 * leg) ** 2))
         lowest = limit.min(axis=0)
         free = 1 - np.clip(3 * self.sitting, 0, 1)
@@ -227,10 +226,10 @@ class Performer:
         lag = delayed(opposite.T, 0.06 * self.fps).T
         run = self.run
         sit = self.sitting
-        swing = 0.02 + self.arm_noise + opposite * (0.36 + 0.15 * run) - 0.15 * run + 0.18 * sit
+        swing = -0.03 + self.arm_noise + opposite * (0.36 + 0.15 * run) - 0.15 * run + 0.18 * sit
         out = 0.17 + 0.05 * run + 0.5 * self.arm_noise[::-1] + 0.05 * sit + 0.02 * self.breath
         bend = self.rest + 0.20 * np.maximum(lag, -0.4) * (1 - run) + run * (1.45 + 0.25 * lag) + 0.75 * sit
-        twist = 0.30 + 0.15 * run + 0.12 * sit + 0.0 * swing
+        twist = 0.14 + 0.2 * run + 0.2 * sit + 0.0 * swing
         hang = {
             "swing": swing + c.pair("arm", "swing+"), "out": out, "bend": bend, "twist": twist,
             "wrist": 0.12 + 0.1 * lag, "side": np.zeros_like(swing), "turn": np.full_like(swing, 0.35),
@@ -254,7 +253,10 @@ class Performer:
         self.torso(lean, twist, drop, forward)
         if not tracks.reaching:
             return
-        for _ in range(2):
+        low = tracks.position(self.figure)[..., 2] - self.floor
+        crouch = np.clip((0.40 - low / self.height) / 0.2, 0.0, 0.85) * tracks.weight
+        crouch = smooth(crouch.max(axis=0), 0.1 * self.fps) * (1 - self.sitting)
+        for _ in range(3):
             gap = self._shortage(tracks)
             if gap.max() < 1e-3:
                 return
@@ -265,13 +267,11 @@ class Performer:
             length = np.maximum(np.linalg.norm(d, axis=-1), 1e-6)
             ahead = (gap * np.clip(flat / length, 0.0, 1.0)).max(axis=0)
             down = (gap * np.clip(-d[..., 2] / length, 0.0, 1.0)).max(axis=0)
-            standing = 1 - self.sitting
             more = smooth(np.stack([ahead, down], axis=1), 0.10 * self.fps)
-            ahead, down = 1.15 * more[:, 0], 1.15 * more[:, 1]
-            room = np.maximum(0.30 * self.height - drop, 0.0)
-            lower = np.minimum(0.62 * down * standing, room)
-            torso = 0.30 * self.height
-            lean = np.minimum(lean + (ahead + 0.55 * (down - lower)) / torso + 0.45 * lower, 1.15)
+            ahead, down = more[:, 0], more[:, 1]
+            lower = np.minimum(down * crouch, np.maximum(0.32 * self.height - drop, 0.0))
+            hips = 0.30 * self.height  # from there to the shoulders
+            lean = np.minimum(lean + (1.1 * ahead + 1.0 * (down - lower)) / hips, 1.1)
             drop = drop + lower
             side = (gap[0] - gap[1]) * -0.5
             twist = np.clip(twist + smooth(side, 0.1 * self.fps), -0.45, 0.45)

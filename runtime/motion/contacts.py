@@ -18,7 +18,7 @@ Array = NDArray[np.float64]
 SIDE = {"l": 0, "r": 1}
 #: Places on one's own body: joint, and how the palm lies there: fingers inward, fingers up, thumb over.
 _LIE: dict[str, tuple[float, float, float]] = {
-    "mouth": (1.25, 0.35, 0.0), "ear": (0.25, 1.05, -0.2), "chin": (0.75, 0.95, 0.2), "chest": (1.2, 0.15, 0.0),
+    "mouth": (1.25, 0.35, 0.0), "ear": (0.15, 1.7, 0.0), "chin": (0.75, 0.95, 0.2), "chest": (1.2, 0.15, 0.0),
     "hip": (1.0, -0.45, 0.5), "head": (0.8, 1.1, 0.9), "heart": (1.3, 0.2, 0.0), "belly": (1.3, 0.0, 0.0),
     "eyes": (1.1, 0.8, 0.0), "elbow": (1.4, 0.1, 0.2), "lap": (0.35, -0.15, 1.35), "front": (0.25, 0.0, 0.0),
 }  # fmt: skip
@@ -156,7 +156,8 @@ def reach_layer(
     """A reach as a layer. window: start and duration in seconds; start: (root xy, heading, skeleton) on arrival."""
     begin, duration = window
     times = [begin + x * duration for x in (reach.start, reach.arrive, reach.leave, reach.end)]
-    weight = plateau(t, *times)
+    stays = reach.end >= 1.0 and reach.leave >= 1.0
+    weight = ramp(t, times[0], times[1]) if stays else plateau(t, *times)
     tilt = _PALM.get(reach.palm, 0.0)
     if isinstance(place, str):
         inward, pitch, over = _LIE[place]

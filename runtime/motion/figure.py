@@ -189,7 +189,7 @@ class Figure:
         wrist_fk = root + down * self._upper + lower * self._lower
         pole_fk = -forward
         heading = rot_z(yaw)
-        natural = np.stack([heading @ np.array([-0.45, m * 0.55, -0.75]) for m in (1.0, -1.0)])
+        natural = np.stack([heading @ np.array([-0.12, m * 0.42, -1.0]) for m in (1.0, -1.0)])
         w = goals.weight[..., None]
         pole = unit((1 - w) * pole_fk + w * natural)
         fk_relative = self._wrist_angles(pose)

@@ -38,8 +38,8 @@ class Manner:
     ramp: float
 
 
-WALK = Manner("walk", 0.42, 0.53, 0.78, 0.62)
-RUN = Manner("run", 0.72, 0.335, 1.28, 0.7)
+WALK = Manner("walk", 0.39, 0.52, 0.80, 0.62)
+RUN = Manner("run", 0.61, 0.335, 1.36, 0.7)
 MANNERS = {"walk": WALK, "run": RUN}
 
 
@@ -202,7 +202,7 @@ class Route:
             foot = (side + k) % 2
             lift = begin + k * period
             land = lift + swing
-            mid = total if k >= count - 2 else land + 0.5 * (2 * period - swing)
+            mid = total if k >= count - 2 else land + 0.42 * (2 * period - swing)
             at = np.array([np.interp(mid, times, xy[:, 0]), np.interp(mid, times, xy[:, 1])])
             width = 1.0 if k >= count - 2 else 0.05 if run else 0.2
             place = self._stance(at, float(np.interp(mid, times, yaw)), foot, width)
@@ -345,13 +345,11 @@ def _foot_track(
     k = np.searchsorted(lift, t, side="right") - 1  # the step last begun
     now, upcoming = np.clip(k, 0, None), np.clip(k + 1, 0, len(steps) - 1)
     u = np.where(k >= 0, np.clip((t - lift[now]) / (land - lift)[now], 0.0, 1.0), 0.0)
-    u = np.where(k >= 0, u, 0.0)
-    go = ease(0.06 + 0.94 * u) * (u > 0) * (u < 1) + (u >= 1)
     go = ease(u)
     place = places[now] + (places[now + 1] - places[now]) * go[:, None]
-    off = np.clip(moved / 1.15, 0.15, 1.0) * (0.85 + 0.25 * run)  # heel-off angle of each step
+    off = np.clip(moved / 1.1, 0.15, 1.0) * (0.98 + 0.25 * run)  # heel-off angle of each step
     strike = np.clip(moved / 1.2 - 0.15, 0.0, 1.0) * (0.34 - 0.2 * run)
-    peel = np.where(run > 0, 0.16, 0.24)
+    peel = np.where(run > 0, 0.16, 0.30)
     due = (k + 1 < len(steps)) & ((u >= 1) | (k < 0))
     rising = np.where(due, off[upcoming] * ease((t - lift[upcoming] + peel[upcoming]) / peel[upcoming]), 0.0)
     settle = np.where(k >= 0, -strike[now] * (1.0 - ramp(t - land[now], 0.0, 0.11)), 0.0)

@@ -55,8 +55,13 @@ def check_file(path: Path, overrides: Settings | None = None) -> Checked:
     return Checked(report, script, catalog, check_script(script, catalog, report, overrides))
 
 
-def check_or_exit(path: Path, format: str = "text", overrides: Settings | None = None) -> Checked:
-    """As :func:`check_file`, for commands: print what was found, and leave with the right code if it is wrong."""
+def check_or_exit(
+    path: Path, format: str = "text", overrides: Settings | None = None, quiet_warnings: bool = False
+) -> Checked:
+    """As :func:`check_file`, for commands: print what was found, and leave with the right code if it is wrong.
+
+    quiet_warnings: print nothing where there are only warnings
+    """
     if not path.exists():
         siblings = [p.name for p in path.parent.glob("*.vds")] if path.parent.is_dir() else []
         meant = nearest(path.name, siblings)
@@ -70,7 +75,9 @@ def check_or_exit(path: Path, format: str = "text", overrides: Settings | None =
         stop(f"cannot read {path}: {error.strerror or error}", MACHINE)
     except MemoryError:
         stop(f"not enough memory to read {path}", MACHINE)
-    print_report(checked.report, format, str(path))
+    if checked.storyboard is None or not quiet_warnings:
+        if checked.storyboard is None or not quiet_warnings:
+        print_report(checked.report, format, str(path))
     if checked.storyboard is None:
         raise typer.Exit(WRONG)
     return checked

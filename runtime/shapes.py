@@ -98,12 +98,12 @@ def _bevelled_box(half: NDArray[np.float64], radius: float) -> _Arrays:
     index: dict[tuple[int, tuple[int, int, int]], int] = {}
     for axis in range(3):
         for corner in np.ndindex(2, 2, 2):
-            sign = np.array(corner) * 2.0 - 1.0
-            point = sign * (half - radius)
-            point[axis] = sign[axis] * half[axis]
+            signs = np.array(corner) * 2.0 - 1.0
+            point = signs * (half - radius)
+            point[axis] = signs[axis] * half[axis]
             index[axis, (corner[0], corner[1], corner[2])] = len(vertices)
             vertices.append(point)
-            normals.append(np.eye(3)[axis] * sign[axis])
+            normals.append(np.eye(3)[axis] * signs[axis])
     points = np.array(vertices)
 
     def add(*ring: int) -> None:

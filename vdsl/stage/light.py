@@ -18,45 +18,54 @@ Colour = tuple[float, float, float]
 
 @dataclass(frozen=True)
 class _Hour:
-    """elevation: of the key in degrees, outdoors and indoors; glass: what window panes show"""
+    """elevation, azimuth: of the key, degrees; backdrop: horizon and zenith
+    glass, glass_share: what window panes show, and how much of it
+    """
 
-    elevation: tuple[float, float]
+    elevation: float
     azimuth: float
     sun: Colour
     sky: Colour
     ground: Colour
-    horizon: Colour
-    zenith: Colour
+    backdrop: tuple[Colour, Colour]
     glass: Colour
     glass_share: float
 
 
-_HOURS = {
-    "dawn": _Hour((24, 46), 70, (1.28, 1.0, 0.8), (0.60, 0.61, 0.70), (0.40, 0.35, 0.34),
-                  (0.985, 0.90, 0.83), (0.80, 0.86, 0.94), (1.0, 0.90, 0.80), 0.75),
-    "day": _Hour((52, 54), 235, (1.22, 1.17, 1.06), (0.62, 0.67, 0.73), (0.42, 0.40, 0.37),
-                 (0.93, 0.95, 0.955), (0.74, 0.85, 0.93), (0.90, 0.95, 0.97), 0.0),
-    "dusk": _Hour((20, 42), 200, (1.36, 0.88, 0.60), (0.52, 0.50, 0.64), (0.38, 0.31, 0.32),
-                  (0.985, 0.82, 0.68), (0.62, 0.64, 0.80), (0.99, 0.78, 0.58), 0.8),
-    "night": _Hour((56, 62), 215, (0.62, 0.66, 0.86), (0.36, 0.41, 0.58), (0.22, 0.23, 0.31),
-                   (0.40, 0.46, 0.60), (0.20, 0.25, 0.40), (0.24, 0.30, 0.46), 0.9),
+_OUTDOORS = {
+    "dawn": _Hour(24, 70, (1.15, 0.90, 0.70), (0.72, 0.72, 0.80), (0.56, 0.50, 0.47),
+                  ((0.985, 0.90, 0.83), (0.80, 0.86, 0.94)), (1.0, 0.90, 0.80), 0.75),
+    "day": _Hour(50, 240, (1.02, 0.97, 0.87), (0.76, 0.80, 0.85), (0.60, 0.58, 0.54),
+                 ((0.93, 0.95, 0.955), (0.72, 0.84, 0.93)), (0.90, 0.95, 0.97), 0.0),
+    "dusk": _Hour(22, 205, (1.20, 0.80, 0.54), (0.64, 0.64, 0.80), (0.53, 0.47, 0.49),
+                  ((0.985, 0.82, 0.68), (0.62, 0.64, 0.80)), (0.99, 0.78, 0.58), 0.8),
+    "night": _Hour(56, 215, (0.42, 0.46, 0.62), (0.34, 0.39, 0.54), (0.25, 0.27, 0.36),
+                   ((0.36, 0.42, 0.56), (0.17, 0.22, 0.36)), (0.93, 0.80, 0.55), 0.75),
 }  # fmt: skip
 
-#: Lamps are on indoors: the night inside is warm and bright, the one in the windows is blue.
-_NIGHT_INSIDE = _Hour((56, 64), 215, (1.12, 0.93, 0.66), (0.56, 0.53, 0.55), (0.40, 0.35, 0.31),
-                      (0.40, 0.43, 0.53), (0.26, 0.30, 0.42), (0.24, 0.30, 0.46), 0.9)  # fmt: skip
+#: Indoors walls throw much of the light back: more fill, less key. At night the lamps are on.
+_INDOORS = {
+    "dawn": _Hour(46, 70, (0.76, 0.58, 0.44), (1.08, 1.02, 1.01), (0.98, 0.88, 0.82),
+                  ((0.96, 0.93, 0.90), (0.96, 0.93, 0.90)), (1.0, 0.90, 0.80), 0.75),
+    "day": _Hour(52, 235, (0.70, 0.66, 0.56), (1.12, 1.11, 1.10), (1.04, 1.00, 0.94),
+                 ((0.93, 0.93, 0.92), (0.93, 0.93, 0.92)), (0.90, 0.95, 0.97), 0.0),
+    "dusk": _Hour(42, 200, (0.88, 0.56, 0.34), (0.92, 0.84, 0.88), (0.86, 0.74, 0.69),
+                  ((0.94, 0.88, 0.84), (0.94, 0.88, 0.84)), (0.99, 0.78, 0.58), 0.8),
+    "night": _Hour(64, 215, (0.70, 0.56, 0.36), (0.76, 0.69, 0.65), (0.68, 0.59, 0.52),
+                   ((0.42, 0.43, 0.50), (0.42, 0.43, 0.50)), (0.24, 0.30, 0.46), 0.9),
+}  # fmt: skip
 
 
 def _hour(time: str, outdoor: bool) -> _Hour:
-    return _NIGHT_INSIDE if time == "night" and not outdoor else _HOURS.get(time, _HOURS["day"])
+    hours = _OUTDOORS if outdoor else _INDOORS
+    return hours.get(time, hours["day"])
 
 
 def make_light(definition: SetDef, time: str, room: tuple[str, ...] = ()) -> Light:
     """The light of a set, seen from one of its rooms (or all of it)."""
     hour = _hour(time, definition.outdoor)
-    azimuth, elevation = math.radians(hour.azimuth), math.radians(hour.elevation[0])
+    azimuth, elevation = math.radians(hour.azimuth), math.radians(hour.elevation)
     if not definition.outdoor:
-        elevation = math.radians(hour.elevation[1])
         found = window_azimuth(definition, room)
         azimuth = azimuth if found is None else found
     sun = (
@@ -64,15 +73,7 @@ def make_light(definition: SetDef, time: str, room: tuple[str, ...] = ()) -> Lig
         math.sin(azimuth) * math.cos(elevation),
         math.sin(elevation),
     )
-    backdrop = (hour.horizon, hour.zenith) if definition.outdoor else (_inside(hour), _inside(hour))
-    return Light(sun, hour.sun, hour.sky, hour.ground, backdrop)
-
-
-def _inside(hour: _Hour) -> Colour:
-    """Behind a room there is no sky, but the paper the picture is drawn on, a little tinted."""
-    paper = (0.93, 0.925, 0.91)
-    h = hour.horizon
-    return (0.65 * paper[0] + 0.35 * h[0], 0.65 * paper[1] + 0.35 * h[1], 0.65 * paper[2] + 0.35 * h[2])
+    return Light(sun, hour.sun, hour.sky, hour.ground, hour.backdrop)
 
 
 def window_azimuth(definition: SetDef, room: tuple[str, ...]) -> float | None:
@@ -95,7 +96,9 @@ def window_azimuth(definition: SetDef, room: tuple[str, ...]) -> float | None:
     return heading + math.radians(27) if min(off, 1 - off) < 0.15 else heading
 
 
-def glass_tint(time: str, outdoor: bool) -> tuple[Colour, float]:
-    """The colour window panes take at a time of day, and how much of it (0..1)."""
+def glass_tint(time: str, outdoor: bool) -> tuple[Colour, float, str]:
+    """The colour window panes take at a time of day, how much of it (0..1), and as what they are drawn:
+    at night a pane seen from inside is dark, and one seen from the street has a lamp behind it."""
     hour = _hour(time, outdoor)
-    return hour.glass, hour.glass_share
+    material = "glass" if time != "night" else "glow" if outdoor else "plain"
+    return hour.glass, hour.glass_share, material

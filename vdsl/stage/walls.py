@@ -28,7 +28,7 @@ class Stretch:
 
     axis: 0 where it runs along X, 1 along Y; across: its middle line; start, end: along the axis
     before, after: indices of the rooms on its lower and upper side, or None for the outside
-    extend: metres added at each end to fill the corner
+    extend: metres added at each end, below zero where it stops short of its corner
     """
 
     axis: int
@@ -64,7 +64,7 @@ def wall_line(room: Room, wall: str) -> tuple[int, float, float, float]:
 
 def stretches(definition: SetDef) -> list[Stretch]:
     """All walls of a set, in a fixed order."""
-    sides: dict[tuple[int, float], list[tuple[float, float, int, int]]] = {}
+    sides: _Sides = {}
     for index, room in enumerate(definition.rooms):
         if room.kind != "room":
             continue
@@ -87,11 +87,25 @@ def stretches(definition: SetDef) -> list[Stretch]:
         for start, end, (before, after) in spans:
             heights = [definition.rooms[i].size[2] for i in (before, after) if i is not None]
             extend = (
-                0.0 if any(s[1] == start for s in spans) else WALL_THICKNESS / 2,
-                0.0 if any(s[0] == end for s in spans) else WALL_THICKNESS / 2,
+                0.0 if any(s[1] == start for s in spans) else _reach(sides, axis, across, start),
+                0.0 if any(s[0] == end for s in spans) else _reach(sides, axis, across, end),
             )
             found.append(Stretch(axis, across, start, end, max(heights), before, after, extend))
     return found
+
+
+_Sides = dict[tuple[int, float], list[tuple[float, float, int, int]]]
+
+
+def _reach(sides: _Sides, axis: int, across: float, end: float) -> float:
+    """How far a wall goes on beyond its corner: walls along X fill the corner, those along Y and those
+    that run into the side of another end at its face, so that no two faces lie in one plane."""
+    others = sides.get((1 - axis, end), [])
+    below = any(s < across - 1e-3 and e >= across - 1e-3 for s, e, _, _ in others)
+    above = any(e > across + 1e-3 and s <= across + 1e-3 for s, e, _, _ in others)
+    if not (below or above):
+        return 0.0
+    return WALL_THICKNESS / 2 if axis == 0 and not (below and above) else -WALL_THICKNESS / 2
 
 
 def find_stretch(walls: list[Stretch], room: Room, wall: str, at: float) -> int | None:
@@ -148,17 +162,33 @@ def wall_mesh(
             corners = [(low, across, bottom), (high, across, bottom), (high, across, top), (low, across, top)]
             meshes.append(_quad(stretch.axis, corners, (0, 1 if side else -1, 0), colors[side], parts[side]))
         a, b = stretch.across - half, stretch.across + half
-        edges = [
-            ([(low, a, bottom), (low, b, bottom), (low, b, top), (low, a, top)], (-1, 0, 0)),
-            ([(high, a, bottom), (high, b, bottom), (high, b, top), (high, a, top)], (1, 0, 0)),
-            ([(low, a, top), (high, a, top), (high, b, top), (low, b, top)], (0, 0, 1)),
-        ]
+        edges = [([(low, a, top), (high, a, top), (high, b, top), (low, b, top)], (0, 0, 1))]
         if bottom > 0:
-            edges.append(
-                ([(low, a, bottom), (high, a, bottom), (high, b, bottom), (low, b, bottom)], (0, 0, -1))
-            )
+            under = [(low, a, bottom), (high, a, bottom), (high, b, bottom), (low, b, bottom)]
+            edges.append((under, (0, 0, -1)))
         meshes += [_quad(stretch.axis, corners, normal, TRIM, parts[2]) for corners, normal in edges]
+        for end, sign in ((low, -1), (high, 1)):
+            meshes.append(_end(stretch, end, sign, bottom, top, colors, parts[2]))
     return join(meshes)
+
+
+def _end(
+    stretch: Stretch,
+    at: float,
+    sign: int,
+    bottom: float,
+    top: float,
+    colors: tuple[Colour, Colour],
+    part: int,
+) -> Mesh:
+    """The end of a piece of wall: a reveal, an outer corner, or (shrunk, out of sight) a joint."""
+    corner = stretch.start - stretch.extend[0] if sign < 0 else stretch.end + stretch.extend[1]
+    outer = abs(at - corner) < 1e-6
+    inset = 0.004 if outer and stretch.extend[0 if sign < 0 else 1] <= 0 else 0.0
+    color = TRIM if not outer else colors[0] if stretch.before is None else colors[1]
+    a, b = stretch.across - WALL_THICKNESS / 2 + inset, stretch.across + WALL_THICKNESS / 2 - inset
+    corners = [(at, a, bottom), (at, b, bottom), (at, b, top - inset), (at, a, top - inset)]
+    return _quad(stretch.axis, corners, (sign, 0, 0), color, part)
 
 
 def skirting(stretch: Stretch, cuts: list[Cut], side: int, clip: tuple[float, float], part: int) -> Mesh:
@@ -176,7 +206,8 @@ def skirting(stretch: Stretch, cuts: list[Cut], side: int, clip: tuple[float, fl
         front = [(low, far, 0.0), (high, far, 0.0), (high, far, h), (low, far, h)]
         top = [(low, near, h), (high, near, h), (high, far, h), (low, far, h)]
         meshes.append(_quad(stretch.axis, front, (0, sign, 0), TRIM, part))
-        meshes.append(_quad(stretch.axis, top, (0, 0, 1), TRIM, part))
+        # lit like its front: a lip this thin is no edge of its own in a picture
+        meshes.append(_quad(stretch.axis, top, (0, 0, 1), TRIM, part, (0, sign, 0)))
         for end, normal in ((low, -1), (high, 1)):
             cap = [(end, near, 0.0), (end, far, 0.0), (end, far, h), (end, near, h)]
             meshes.append(_quad(stretch.axis, cap, (normal, 0, 0), TRIM, part))
@@ -203,14 +234,15 @@ def _quad(
     normal: tuple[int, int, int],
     color: Colour,
     part: int,
+    shading: tuple[int, int, int] | None = None,
 ) -> Mesh:
     """Four corners given as (along, across, up), facing ``normal`` in the same terms."""
     points = np.array(corners, np.float64)
-    facing = np.array(normal, np.float64)
+    facing, lit = np.array(normal, np.float64), np.array(shading or normal, np.float64)
     if axis == 1:
-        points, facing = points[:, [1, 0, 2]], facing[[1, 0, 2]]
+        points, facing, lit = points[:, [1, 0, 2]], facing[[1, 0, 2]], lit[[1, 0, 2]]
     order: NDArray[np.int64] = np.array([[0, 1, 2], [0, 2, 3]])
     if np.cross(points[1] - points[0], points[2] - points[0]) @ facing < 0:
         order = order[:, ::-1]
     material = "plaster" if abs(normal[1]) == 1 else "plain"
-    return painted(points, order, np.tile(facing, (4, 1)), color, material, part)
+    return painted(points, order, np.tile(lit, (4, 1)), color, material, part)

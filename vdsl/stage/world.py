@@ -85,6 +85,7 @@ class _Builder:
     floors: list[tuple[float, float, float, float]] = field(default_factory=list)
     walls: list[Stretch] = field(default_factory=list)
     parts: int = 0
+    face_parts: dict[tuple[int, float, int, int], int] = field(default_factory=dict)
 
     # -- the whole ------------------------------------------------------------------
 
@@ -148,6 +149,12 @@ class _Builder:
         self.parts += count
         return first
 
+    def _face_part(self, key: tuple[int, float, int, int]) -> int:
+        """One part for all of a room's wall on one line, so that no ink runs where two walls meet in it."""
+        if key not in self.face_parts:
+            self.face_parts[key] = self._parts()
+        return self.face_parts[key]
+
     # -- rooms ----------------------------------------------------------------------
 
     def _room(self, room: Room) -> int:
@@ -167,8 +174,10 @@ class _Builder:
         sides = (stretch.before, stretch.after)
         colors = tuple(facade if i is None else self.definition.rooms[i].wall_color for i in sides)
         owners = [room_ids[i] for i in sides if i is not None]
-        first = self._parts(4)
-        mesh = wall_mesh(stretch, cuts, (colors[0], colors[1]), (first, first + 1, first + 2))
+        line = (stretch.axis, round(stretch.across, 3))
+        faces = [self._face_part((*line, side, -1 if r is None else r)) for side, r in enumerate(sides)]
+        edge = self._face_part((*line, 2, -1))
+        mesh = wall_mesh(stretch, cuts, (colors[0], colors[1]), (faces[0], faces[1], edge))
         self._add(mesh, owners[0], index)
         for side, room in enumerate(sides):
             if room is None:
@@ -176,7 +185,11 @@ class _Builder:
             r, i = self.definition.rooms[room], stretch.axis
             inset = WALL_THICKNESS / 2
             clip = (r.at[i] + inset, r.at[i] + r.size[i] - inset)
-            self._add(skirting(stretch, cuts, side, clip, first + 3), room_ids[room], index)
+            self._add(
+                skirting(stretch, cuts, side, clip, self._face_part((*line, 3 + side, room))),
+                room_ids[room],
+                index,
+            )
         for low, high, bottom, top in wall_pieces(stretch, cuts):
             middle = stretch.point((low + high) / 2)
             along, across = (high - low) / 2, WALL_THICKNESS / 2
@@ -349,7 +362,7 @@ def _with_clear_spots(
     return replace(item, spots=tuple(spots))
 
 
-def _glazed(mesh: Mesh, tint: Colour, share: float) -> Mesh:
+def _glazed(mesh: Mesh, tint: Colour, share: float, material: str) -> Mesh:
     """Glass takes the colour of the hour."""
     glass = mesh.materials == MATERIALS.index("glass")
     if share <= 0 or not glass.any():
@@ -359,4 +372,5 @@ def _glazed(mesh: Mesh, tint: Colour, share: float) -> Mesh:
     colors[glass] = (1 - share) * colors[glass] + share * np.clip(
         np.asarray(tint, np.float32) * relative, 0, 1
     )
-    return Mesh(mesh.vertices, mesh.faces, mesh.normals, colors, mesh.parts, mesh.materials)
+    materials = np.where(glass, MATERIALS.index(material), mesh.materials).astype(np.int32)
+    return Mesh(mesh.vertices, mesh.faces, mesh.normals, colors, mesh.parts, materials)

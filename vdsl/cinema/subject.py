@@ -68,9 +68,9 @@ def person(
         return np.asarray(world[:, j, :3, :3] @ local + world[:, j, :3, 3])
 
     def joints(*names: str) -> NDArray[np.float64]:
-        return np.asarray(world[:, [JOINT[n] for n in names], :3, 3].mean(axis=1))
+        return np.asarray(world[:, [JOINT[n] for n in names]][..., :3, 3].mean(axis=1))
 
-    soles = world[:, [JOINT[n] for n in ("foot_l", "foot_r", "toe_l", "toe_r")], :3, 3]
+    soles = world[:, [JOINT[n] for n in ("foot_l", "foot_r", "toe_l", "toe_r")]][..., :3, 3]
     feet = soles.mean(axis=1)
     feet[:, 2] = np.maximum(soles[:, :, 2].min(axis=1) - bind[JOINT["toe_l"]][2], np.asarray(position)[:, 2])
     landmarks = {

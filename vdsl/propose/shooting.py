@@ -140,7 +140,7 @@ def _shoot_one(
     at = np.where(key == 1, last, 0)
     mu = _mu(movement, sample.mu[i])
     focal = _lens(shot, movement, scale, rig, sample.lens[i], mu)
-    relative: Array = sample.azimuth[i] * (2 * np.pi / AZIMUTHS)
+    relative: Array = np.asarray(sample.azimuth[i] * (2 * np.pi / AZIMUTHS), float)
     if rig == "cinema":
         relative = relative + (2 * sample.jitter[i] - 1) * _JITTER
     phi = subject.heading[at] + relative

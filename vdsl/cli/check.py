@@ -58,7 +58,7 @@ def check_file(path: Path, overrides: Settings | None = None) -> Checked:
 def check_or_exit(
     path: Path, format: str = "text", overrides: Settings | None = None, quiet_warnings: bool = False
 ) -> Checked:
-    """As :func:`check_file`, for commands: print what was found, and leave with the right code if it is wrong.
+    """As :func:`check_file`, for commands: print what was found, leave with the right code if it is wrong.
 
     quiet_warnings: print nothing where there are only warnings
     """
@@ -76,7 +76,6 @@ def check_or_exit(
     except MemoryError:
         stop(f"not enough memory to read {path}", MACHINE)
     if checked.storyboard is None or not quiet_warnings:
-        if checked.storyboard is None or not quiet_warnings:
         print_report(checked.report, format, str(path))
     if checked.storyboard is None:
         raise typer.Exit(WRONG)

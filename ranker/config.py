@@ -54,7 +54,8 @@ class TrainConfig:
     dictionary, momentum, temperature: K, the momentum encoder's m and τ of L_q
     smoothing: label smoothing; held_out: share of the clips, by whole groups, kept for evaluation
     calibration: batches over which batch-norm statistics are taken anew at full size at the end
-    autocast: compute in bfloat16 where the network allows
+    autocast: compute in bfloat16 where the network allows; augment: mirror, and vary the light
+    backbone, size: of the model, at inference
     """
 
     phases: tuple[Phase, ...]
@@ -73,6 +74,7 @@ class TrainConfig:
     autocast: bool = True
     augment: bool = True
     backbone: str = "resnet50"
+    size: int = 224
     seed: int = 0
     threads: int = 2
 
@@ -80,9 +82,9 @@ class TrainConfig:
 PAPER = TrainConfig(phases=(Phase(epochs=60, size=224, batch=128),))
 CPU = TrainConfig(
     phases=(
-        Phase(epochs=12, size=96, frames=4, key_frames=2, batch=32),
-        Phase(epochs=3, size=160, frames=3, key_frames=2, batch=32),
-        Phase(epochs=2, size=224, frames=3, key_frames=2, batch=32),
+        Phase(epochs=10, size=96, frames=3, key_frames=1, batch=32),
+        Phase(epochs=3, size=128, frames=3, key_frames=1, batch=32),
+        Phase(epochs=1, size=224, frames=2, key_frames=1, batch=32),
     ),
     momentum=0.99,
     contrast_weight=0.25,

@@ -86,7 +86,7 @@ class Ranker:
         if count < self._batch:
             shape = (self._batch - count, *frames.shape[1:])
             padded = np.concatenate([frames, np.zeros(shape, np.uint8)])
-        pictures = torch.from_numpy(np.ascontiguousarray(padded)).to(self.device)
+        pictures = torch.from_numpy(padded.copy()).to(self.device)
         flat = normalised(pictures.flatten(0, 1)).to(torch.bfloat16)
         features = self._features(flat.contiguous(memory_format=torch.channels_last)).float()
         features = features.view(self._batch, config.frames, -1)
@@ -129,7 +129,8 @@ def fold_batch_norm(backbone: nn.Module) -> nn.Module:
         parent = folded.get_submodule(parent_name)
         conv = leaf.replace("bn", "conv") if leaf.startswith("bn") else str(int(leaf) - 1)  # or `downsample`
         before, norm = parent.get_submodule(conv), parent.get_submodule(leaf)
-        assert isinstance(before, nn.Conv2d) and isinstance(norm, nn.BatchNorm2d)
+        assert isinstance(before, nn.Conv2d)
+        assert isinstance(norm, nn.BatchNorm2d)
         parent.add_module(conv, fuse_conv_bn_eval(before, norm))
         parent.add_module(leaf, nn.Identity())
     return folded

@@ -1,0 +1,239 @@
+"""Training sets on disk: shards of frames and labels, written by whoever can render them.
+
+A folder holds ``dataset.json`` (the words of the classes, picture size, frames a clip) and shards
+``shard-00000.npy`` (uint8 [N, T, H, W, 3]) each with ``shard-00000.jsonl`` (one label a line). The
+label file is written last and is what makes a shard count, so writing can stop and go on anywhere.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
+from functools import cached_property
+from pathlib import Path
+from types import TracebackType
+from typing import Any
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from .errors import RankerError
+
+SCHEMA = "vds.dataset/1"
+SHARD = 64
+
+
+@dataclass(frozen=True)
+class Label:
+    """What is known of a clip.
+
+    professional: chosen, or a negative; movement, scale, angle: words, or None where not known
+    group: clips that belong together (a set with its cast, say) and never stand on both sides of the
+        split; strength: 0 for a positive, else how far the negative was perturbed (0..1)
+    """
+
+    professional: bool
+    movement: str | None
+    scale: str | None
+    angle: str | None
+    group: str
+    strength: float
+
+
+@dataclass(frozen=True)
+class Words:
+    """The words of the three classes, in the order of the model's outputs."""
+
+    movements: tuple[str, ...]
+    scales: tuple[str, ...]
+    angles: tuple[str, ...]
+
+
+class ShardWriter:
+    """Writes a training set; a folder that holds one already is gone on with.
+
+    size: (height, width) of the frames; ``len(writer)`` is how many clips are safely on disk, so a
+    generator that draws its clips by index starts again there. Use as a context manager.
+    """
+
+    def __init__(
+        self, folder: str | Path, words: Words, size: tuple[int, int] = (224, 224), frames: int = 8
+    ) -> None:
+        self.folder, self.words = Path(folder), words
+        self.shape = (frames, *size, 3)
+        header = {"schema": SCHEMA, **asdict(words), "size": list(size), "frames": frames}
+        header = json.loads(json.dumps(header))
+        try:
+            self.folder.mkdir(parents=True, exist_ok=True)
+            path = self.folder / "dataset.json"
+            if path.exists():
+                if json.loads(path.read_text("utf-8")) != header:
+                    raise RankerError(f"{path}: another kind of training set is there already")
+            else:
+                _replace(path, json.dumps(header, indent=1, ensure_ascii=False).encode())
+            found = _shards(self.folder)
+            self._done = sum(len(_labels(p)) for p in found)
+            self._next = 1 + max((int(p.stem.split("-")[1]) for p in found), default=-1)
+        except (OSError, ValueError) as error:
+            raise RankerError(f"{folder}: cannot be used as a training set: {error}") from error
+        self._frames: list[NDArray[np.uint8]] = []
+        self._pending: list[Label] = []
+
+    def __len__(self) -> int:
+        return self._done
+
+    def add(
+        self,
+        frames: NDArray[np.uint8],
+        label: bool,
+        movement: str | None,
+        scale: str | None,
+        angle: str | None,
+        group: str,
+        strength: float,
+    ) -> None:
+        """Append a clip: uint8 [T, H, W, 3]; see :class:`Label` for the rest."""
+        if frames.shape != self.shape or frames.dtype != np.uint8:
+            raise ValueError(f"expected uint8 {self.shape}, got {frames.dtype} {frames.shape}")
+        for word, known in (
+            (movement, self.words.movements),
+            (scale, self.words.scales),
+            (angle, self.words.angles),
+        ):
+            if word is not None and word not in known:
+                raise ValueError(f"{word!r} is not one of the set's words {known}")
+        self._frames.append(frames.copy())
+        self._pending.append(Label(bool(label), movement, scale, angle, group, float(strength)))
+        if len(self._pending) >= SHARD:
+            self.flush()
+
+    def flush(self) -> None:
+        """Write the clips that are not on disk yet as a shard of their own."""
+        if not self._pending:
+            return
+        base = self.folder / f"shard-{self._next:05d}"
+        lines = "".join(json.dumps(asdict(label), ensure_ascii=False) + "\n" for label in self._pending)
+        part = self.folder / f".{base.name}.npy.part"
+        try:
+            with part.open("wb") as file:
+                np.save(file, np.stack(self._frames))
+            os.replace(part, base.with_suffix(".npy"))
+            _replace(base.with_suffix(".jsonl"), lines.encode())
+        except OSError as error:
+            part.unlink(missing_ok=True)
+            raise RankerError(f"{base}.npy: cannot be written: {error.strerror or error}") from error
+        self._done += len(self._pending)
+        self._next += 1
+        self._frames, self._pending = [], []
+
+    def __enter__(self) -> ShardWriter:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.flush()
+
+
+class Dataset:
+    """A training set that can be read clip by clip; frames stay on disk until asked for."""
+
+    def __init__(self, folder: str | Path) -> None:
+        self.folder = Path(folder)
+        try:
+            header = json.loads((self.folder / "dataset.json").read_text("utf-8"))
+            if header["schema"] != SCHEMA:
+                raise ValueError(f"schema {header['schema']}")
+            self.words = Words(*(tuple(header[k]) for k in ("movements", "scales", "angles")))
+            self.frames = int(header["frames"])
+            self.labels: list[Label] = []
+            self._where: list[tuple[int, int]] = []
+            self._arrays: list[NDArray[np.uint8]] = []
+            for number, path in enumerate(_shards(self.folder)):
+                labels = _labels(path)
+                array = np.load(path.with_suffix(".npy"), mmap_mode="r", allow_pickle=False)
+                if (
+                    array.dtype != np.uint8
+                    or array.ndim != 5
+                    or array.shape[:2] != (len(labels), self.frames)
+                ):
+                    raise ValueError(f"{path.name} does not fit its frames")
+                self._arrays.append(array)
+                self._where += [(number, i) for i in range(len(labels))]
+                self.labels += labels
+        except (OSError, ValueError, KeyError, TypeError) as error:
+            raise RankerError(f"{folder}: is not a training set, or a damaged one: {error}") from error
+
+    def __len__(self) -> int:
+        return len(self.labels)
+
+    def clip(self, index: int, frames: Sequence[int], size: int) -> NDArray[np.uint8]:
+        """Chosen frames of a clip, scaled to a square: uint8 [len(frames), size, size, 3]."""
+        shard, row = self._where[index]
+        chosen = np.asarray(self._arrays[shard][row, list(frames)])
+        if chosen.shape[1:3] == (size, size):
+            return chosen
+        how = cv2.INTER_AREA if size < chosen.shape[1] else cv2.INTER_LINEAR
+        return np.stack([cv2.resize(f, (size, size), interpolation=how) for f in chosen]).astype(np.uint8)
+
+    @cached_property
+    def classes(self) -> NDArray[np.int64]:
+        """int64 [N, 3]: indices of movement, scale and angle, −1 where not known."""
+        known = [{w: i for i, w in enumerate(words)} for words in asdict(self.words).values()]
+        rows = [(la.movement, la.scale, la.angle) for la in self.labels]
+        table = [
+            [k.get(w, -1) if w is not None else -1 for w, k in zip(row, known, strict=True)] for row in rows
+        ]
+        return np.array(table, np.int64).reshape(-1, 3)
+
+    @cached_property
+    def professional(self) -> NDArray[np.float32]:
+        """float32 [N]: 1 for positives."""
+        return np.array([la.professional for la in self.labels], np.float32)
+
+    def split(self, share: float, seed: int) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+        """Indices to train on, and held out: whole groups in a random order until ``share`` is reached.
+
+        With a share above 0 and more than one group both sides have at least one.
+        """
+        groups: dict[str, list[int]] = {}
+        for i, label in enumerate(self.labels):
+            groups.setdefault(label.group, []).append(i)
+        order = sorted(
+            groups, key=lambda g: hashlib.sha256(f"{seed}:{g}".encode("utf-8", "replace")).digest()
+        )
+        held: list[int] = []
+        for group in order[: len(order) - 1 if share > 0 else 0]:
+            if len(held) >= share * len(self.labels):
+                break
+            held += groups[group]
+        train = sorted(set(range(len(self.labels))) - set(held))
+        return np.array(train, np.int64), np.array(sorted(held), np.int64)
+
+    def about(self) -> dict[str, Any]:
+        """Counts, for the record beside the weights."""
+        positives = int(self.professional.sum())
+        return {
+            "clips": len(self),
+            "positives": positives,
+            "negatives": len(self) - positives,
+            "groups": len({la.group for la in self.labels}),
+        }
+
+
+def _shards(folder: Path) -> list[Path]:
+    return sorted(folder.glob("shard-*.jsonl"))
+
+
+def _labels(path: Path) -> list[Label]:
+    return [Label(**json.loads(line)) for line in path.read_text("utf-8").splitlines() if line.strip()]
+
+
+def _replace(path: Path, content: bytes) -> None:
+    part = path.with_name(f".{path.name}.part")
+    part.write_bytes(content)
+    os.replace(part, path)

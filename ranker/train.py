@@ -1,0 +1,323 @@
+"""Training, from clips to weights: read it from top to bottom.
+
+Assumes a training set written by :class:`ranker.data.ShardWriter`. Leaves ``weights/`` (to be loaded
+by :class:`ranker.infer.Ranker`), ``log.jsonl`` and ``checkpoint.pt`` in the output folder. Stopped at
+any time, it goes on from the last whole epoch with the same result as if it had not been stopped.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+import time
+from collections.abc import Callable, Iterator
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+import torch
+from numpy.typing import NDArray
+from torch import Tensor, nn
+
+from .config import CPU, ModelConfig, Phase, TrainConfig, to_json
+from .data import Dataset
+from .dictionary import Dictionary, follow, momentum_copy
+from .errors import RankerError
+from .evaluate import evaluate
+from .losses import binary_loss, class_loss, contrast_loss
+from .model import ShotRanker, frame_times, normalised
+from .weights import save_weights
+
+Report = Callable[[dict[str, Any]], None]
+
+
+class Batch(NamedTuple):
+    """Clips of one step: frames uint8 [B, T, S, S, 3] and times [B, T] of query and key; labels."""
+
+    query: Tensor
+    query_times: Tensor
+    key: Tensor
+    key_times: Tensor
+    professional: Tensor
+    classes: Tensor
+    clips: Tensor
+
+
+def train(
+    data_dir: str | Path, out_dir: str | Path, config: TrainConfig = CPU, report: Report | None = None
+) -> dict[str, Any]:
+    """Train a ranker and return what it measures on the held-out groups.
+
+    report: called with every line of the log: ``epoch``, ``step``, ``steps``, ``loss`` and its parts,
+    ``seconds``; at last ``measured``
+    """
+    out = Path(out_dir)
+    out.mkdir(parents=True, exist_ok=True)
+    torch.set_num_threads(config.threads)
+    torch.manual_seed(config.seed)
+    device = torch.device("cuda" if torch.cuda.is_available() else "cpu")
+
+    # The clips: whole groups are kept back.
+    data = Dataset(data_dir)
+    learn, held = data.split(config.held_out, config.seed)
+    if len(learn) < 2:
+        raise RankerError(f"{data_dir}: there are too few clips to train on")
+
+    # The network, the encoder of the keys that follows it, and the dictionary of keys.
+    words = data.words
+    shape = ModelConfig(
+        words.movements, words.scales, words.angles, config.backbone, data.frames, config.size
+    )
+    model = ShotRanker(shape).to(device)
+    model.to(memory_format=torch.channels_last)  # type: ignore[call-overload]
+    keys = momentum_copy(model)
+    dictionary = Dictionary(config.dictionary, shape.contrast, config.seed).to(device)
+    optimizer = _optimizer(model, config)
+
+    # Where an earlier run stopped.
+    schedule = [phase for phase in config.phases for _ in range(phase.epochs)]
+    lengths = [math.ceil(len(learn) / phase.batch) for phase in schedule]
+    state = out / "checkpoint.pt"
+    done, step = _resume(state, config, model, keys, dictionary, optimizer)
+    start = time.monotonic()
+
+    with (out / "log.jsonl").open("a", encoding="utf-8") as log:
+        for epoch in range(done, len(schedule)):
+            phase = schedule[epoch]
+            model.train()
+            sums = np.zeros(4)
+            for batch in _batches(data, learn, phase, config, epoch):
+                for group in optimizer.param_groups:
+                    group["lr"] = learning_rate(config, step, sum(lengths))
+
+                parts = _losses(model, keys, dictionary, batch, config, device)
+                loss = parts[0] + config.class_weight * parts[1] + config.contrast_weight * parts[2]
+                optimizer.zero_grad(set_to_none=True)
+                loss.backward()
+                nn.utils.clip_grad_norm_(model.parameters(), 5.0)
+                optimizer.step()
+                follow(keys, model, config.momentum)
+
+                step += 1
+                sums += [float(loss.detach()), *(float(p.detach()) for p in parts)]
+
+            names = ("loss", "binary", "class", "contrast")
+            line: dict[str, Any] = {
+                "epoch": epoch + 1,
+                "epochs": len(schedule),
+                "size": phase.size,
+                "step": step,
+            }
+            line |= {n: round(float(v) / lengths[epoch], 5) for n, v in zip(names, sums, strict=True)}
+            line |= {"steps": sum(lengths), "seconds": round(time.monotonic() - start, 1)}
+            _tell(log, line, report)
+            _keep(state, config, model, keys, dictionary, optimizer, epoch + 1, step)
+
+        # Small pictures leave batch norm with the wrong statistics for full ones.
+        calibrate(model, data, learn, config, device)
+        measured = evaluate(model.cpu(), data, held) if len(held) else {"clips": 0}
+        _tell(log, {"measured": measured}, report)
+
+    save_weights(out / "weights", model, training=to_json(config), data=data.about(), measured=measured)
+    return measured
+
+
+def learning_rate(config: TrainConfig, step: int, steps: int) -> float:
+    """A straight warm-up, then half a cosine down to a hundredth."""
+    warm = max(1, round(config.warmup * steps))
+    if step < warm:
+        return config.learning_rate * (step + 1) / warm
+    along = (step - warm) / max(1, steps - warm)
+    return config.learning_rate * (0.01 + 0.99 * 0.5 * (1 + math.cos(math.pi * along)))
+
+
+@torch.no_grad()
+def calibrate(
+    model: ShotRanker, data: Dataset, clips: NDArray[np.int64], config: TrainConfig, device: torch.device
+) -> None:
+    """Take the batch-norm statistics anew from full-size pictures of ``config.calibration`` batches."""
+    norms = [m for m in model.modules() if isinstance(m, nn.BatchNorm2d)]
+    kept = [m.momentum for m in norms]
+    phase = Phase(1, model.config.size, frames=2, key_frames=0, batch=16)
+    for norm in norms:
+        norm.reset_running_stats()
+        norm.momentum = None  # the plain average of all batches
+    model.train()
+    for count, batch in enumerate(_batches(data, clips, phase, config, epoch=-1)):
+        if count == config.calibration:
+            break
+        with torch.autocast(device.type, torch.bfloat16, enabled=config.autocast):
+            model(normalised(batch.query.to(device)), batch.query_times.to(device))
+    for norm, momentum in zip(norms, kept, strict=True):
+        norm.momentum = momentum
+    model.eval()
+
+
+def _losses(
+    model: ShotRanker,
+    keys: ShotRanker,
+    dictionary: Dictionary,
+    batch: Batch,
+    config: TrainConfig,
+    device: torch.device,
+) -> tuple[Tensor, Tensor, Tensor]:
+    """L_b, L_c and L_q of a batch; its keys go into the dictionary afterwards."""
+    with torch.autocast(device.type, torch.bfloat16, enabled=config.autocast):
+        out = model(normalised(batch.query.to(device)), batch.query_times.to(device))
+    binary = binary_loss(out.logit, batch.professional.to(device), config.smoothing)
+    labels = tuple(batch.classes.to(device).unbind(1))
+    classes = class_loss((out.movement, out.scale, out.angle), labels, config.smoothing)
+    if config.contrast_weight == 0:
+        return binary, classes, torch.zeros((), device=device)
+    with torch.no_grad(), torch.autocast(device.type, torch.bfloat16, enabled=config.autocast):
+        key = keys(normalised(batch.key.to(device)), batch.key_times.to(device)).contrast
+    clips = batch.clips.to(device)
+    others = dictionary.vectors.clone()
+    contrast = contrast_loss(out.contrast, key, others, config.temperature, dictionary.same(clips))
+    dictionary.push(key, clips)
+    return binary, classes, contrast
+
+
+def _batches(
+    data: Dataset, clips: NDArray[np.int64], phase: Phase, config: TrainConfig, epoch: int
+) -> Iterator[Batch]:
+    """The clips in an order that hangs on seed and epoch alone; the next batch is read meanwhile."""
+    order = np.random.default_rng((config.seed, epoch + 1)).permutation(clips)
+    parts = [order[i : i + phase.batch] for i in range(0, len(order), phase.batch)]
+    if len(parts) > 1 and len(parts[-1]) == 1:  # batch norm needs company
+        parts[-1] = np.append(parts[-1], order[0])
+    with ThreadPoolExecutor(1) as reader:
+        made = [
+            reader.submit(_batch, data, part, phase, config, (epoch + 1, n))
+            for n, part in enumerate(parts[:2])
+        ]
+        for n in range(len(parts)):
+            batch = made.pop(0).result()
+            if n + 2 < len(parts):
+                made.append(reader.submit(_batch, data, parts[n + 2], phase, config, (epoch + 1, n + 2)))
+            yield batch
+
+
+def _batch(
+    data: Dataset, clips: NDArray[np.int64], phase: Phase, config: TrainConfig, key: tuple[int, int]
+) -> Batch:
+    rng = np.random.default_rng((config.seed, 1, *key))
+    times = frame_times(ModelConfig((), (), (), frames=data.frames)).numpy()
+    mirror = mirror_words(data.words.movements)
+    count, keyed = phase.frames, phase.key_frames if config.contrast_weight else 0
+    if count + keyed > data.frames:
+        raise RankerError(f"query and key need {count + keyed} frames, the clips have {data.frames}")
+    classes = data.classes[clips]
+    frames, places = [], []
+    for row, index in enumerate(clips):
+        chosen = rng.permutation(data.frames)
+        picked = np.concatenate([np.sort(chosen[:count]), np.sort(chosen[count : count + keyed])])
+        clip = data.clip(int(index), picked.tolist(), phase.size)
+        if config.augment:
+            clip, flipped = varied(clip, rng)
+            if flipped and classes[row, 0] >= 0:
+                classes[row, 0] = mirror[classes[row, 0]]
+        frames.append(clip)
+        places.append(times[picked])
+    pictures, moments = torch.from_numpy(np.stack(frames)), torch.from_numpy(np.stack(places))
+    return Batch(
+        pictures[:, :count],
+        moments[:, :count],
+        pictures[:, count:],
+        moments[:, count:],
+        torch.from_numpy(data.professional[clips]),
+        torch.from_numpy(classes),
+        torch.from_numpy(clips),
+    )
+
+
+def varied(clip: NDArray[np.uint8], rng: np.random.Generator) -> tuple[NDArray[np.uint8], bool]:
+    """The clip uint8 [T, H, W, 3] in another light and perhaps mirrored; whether it was.
+
+    Brightness, contrast and the balance of colours say nothing about how well a shot is taken.
+    """
+    gain = rng.uniform(0.85, 1.15) * rng.uniform(0.95, 1.05, 3)
+    lift = rng.uniform(-18, 18)
+    table = np.clip((np.arange(256)[:, None] - 128) * gain + 128 + lift, 0, 255).astype(np.uint8)
+    out = np.stack([table[clip[..., c], c] for c in range(3)], -1)
+    flipped = bool(rng.random() < 0.5)
+    return (out[:, :, ::-1] if flipped else out), flipped
+
+
+def mirror_words(words: tuple[str, ...]) -> list[int]:
+    """For each word the index of its mirror image: ``pan-left`` for ``pan-right``, itself for most."""
+    swap = {"left": "right", "right": "left"}
+    mirrored = ["-".join(swap.get(part, part) for part in word.split("-")) for word in words]
+    return [words.index(m) if m in words else i for i, m in enumerate(mirrored)]
+
+
+def _optimizer(model: ShotRanker, config: TrainConfig) -> torch.optim.Optimizer:
+    decayed = [p for p in model.parameters() if p.ndim > 1]
+    plain = [p for p in model.parameters() if p.ndim <= 1]
+    groups = [
+        {"params": decayed, "weight_decay": config.weight_decay},
+        {"params": plain, "weight_decay": 0.0},
+    ]
+    if config.optimizer == "adamw":
+        return torch.optim.AdamW(groups, lr=config.learning_rate)
+    if config.optimizer == "sgd":
+        return torch.optim.SGD(groups, lr=config.learning_rate, momentum=0.9, nesterov=True)
+    raise RankerError(f"unknown optimizer {config.optimizer!r}: adamw or sgd")
+
+
+def _keep(
+    path: Path,
+    config: TrainConfig,
+    model: ShotRanker,
+    keys: ShotRanker,
+    dictionary: Dictionary,
+    optimizer: torch.optim.Optimizer,
+    epochs: int,
+    step: int,
+) -> None:
+    part = path.with_suffix(".part")
+    parts: dict[str, Any] = {"model": model, "keys": keys, "dictionary": dictionary, "optimizer": optimizer}
+    states = {name: value.state_dict() for name, value in parts.items()}
+    try:
+        torch.save({"config": json.dumps(to_json(config)), "epochs": epochs, "step": step, **states}, part)
+        os.replace(part, path)
+    except (OSError, RuntimeError) as error:
+        part.unlink(missing_ok=True)
+        raise RankerError(f"{path}: cannot be written: {error}") from error
+
+
+def _resume(
+    path: Path,
+    config: TrainConfig,
+    model: ShotRanker,
+    keys: ShotRanker,
+    dictionary: Dictionary,
+    optimizer: torch.optim.Optimizer,
+) -> tuple[int, int]:
+    """Epochs and steps done by an earlier run with the same settings, its state loaded."""
+    if not path.exists():
+        return 0, 0
+    try:
+        state = torch.load(path, map_location="cpu", weights_only=True)
+        if state["config"] != json.dumps(to_json(config)):
+            raise RankerError(
+                f"{path}: is of a training with other settings; name another folder or remove it"
+            )
+        model.load_state_dict(state["model"])
+        keys.load_state_dict(state["keys"])
+        dictionary.load_state_dict(state["dictionary"])
+        optimizer.load_state_dict(state["optimizer"])
+        return int(state["epochs"]), int(state["step"])
+    except RankerError:
+        raise
+    except Exception as error:  # whatever a damaged file makes torch raise
+        raise RankerError(f"{path}: is damaged; remove it to start anew") from error
+
+
+def _tell(log: Any, line: dict[str, Any], report: Report | None) -> None:
+    log.write(json.dumps(line) + "\n")
+    log.flush()
+    if report is not None:
+        report(line)

@@ -385,14 +385,20 @@ def tube(
     axis = np.eye(3)[np.argmin(np.abs(tangent[0]))]
     angle = np.arange(sides) * (2 * math.pi / sides)
     rings, outward = [], []
-    for point, along in zip(points, tangent, strict=True):
+    for i, (point, along) in enumerate(zip(points, tangent, strict=True)):
+        arm = ahead[min(i, len(ahead) - 1)]
+        cosine = max(float(arm @ along), 0.5)
+        bend = along * cosine - arm
+        bend /= max(float(np.linalg.norm(bend)), 1e-9)
+        stretch = 1.0 / cosine - 1.0
         u = axis - along * (axis @ along)
         u /= max(float(np.linalg.norm(u)), 1e-9)
         axis = u  # carried along, so that the rings do not twist
         v = np.cross(along, u)
         out = np.cos(angle)[:, None] * u + np.sin(angle)[:, None] * v
         outward.append(out)
-        rings.append(point + radius * out)
+        # wider across a bend, so that the bar keeps its thickness along both of its arms
+        rings.append(point + radius * (out + np.outer(out @ bend, bend * stretch)))
     count = len(points)
     vertices = np.concatenate([*rings, rings[0], rings[-1]])
     normals = np.concatenate([*outward, np.tile(-tangent[0], (sides, 1)), np.tile(tangent[-1], (sides, 1))])

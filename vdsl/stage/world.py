@@ -179,6 +179,8 @@ class _Builder:
         edge = self._face_part((*line, 2, -1))
         mesh = wall_mesh(stretch, cuts, (colors[0], colors[1]), (faces[0], faces[1], edge))
         self._add(mesh, owners[0], index)
+        if len(owners) == 2:  # each face belongs to the room it looks into
+            self.mesh_object[-1][mesh.parts == faces[1]] = owners[1]
         for side, room in enumerate(sides):
             if room is None:
                 continue

@@ -1,1 +1,5 @@
 """The shot ranking discriminator: model, losses, training and inference. Knows nothing of the language."""
+
+from .errors import RankerError
+
+__all__ = ["RankerError"]

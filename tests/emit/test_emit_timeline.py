@@ -37,6 +37,16 @@ def test_fades_do_not_and_nothing_is_longer_than_half_a_shot() -> None:
     assert [(p.start, p.enter_frames, p.leave_frames) for p in both] == [(0, 0, 4), (5, 4, 4), (10, 4, 0)]
 
 
+def test_a_film_can_fade_out_and_in_and_end_dark() -> None:
+    through_black = Transition("fade-in", 0.25, out=0.125)
+    placed = place_shots([20, 20], [CUT, through_black], (24, 1), Transition("fade-out", 0.5))
+    assert [(p.start, p.enter, p.enter_frames, p.leave, p.leave_frames) for p in placed] == [
+        (0, "cut", 0, "fade-out", 3),
+        (20, "fade-in", 6, "fade-out", 10),
+    ]
+    assert place_shots([], [], (24, 1), Transition("fade-out", 0.5)) == ()
+
+
 @pytest.mark.parametrize("kind", ["cut", "dissolve", "wipe", "fade-in", "fade-out"])
 def test_animatic_shows_every_shot(tmp_path: Path, kind: str) -> None:
     shots = [

@@ -29,27 +29,35 @@ class Placed:
 
 
 def place_shots(
-    lengths: Sequence[int], transitions: Sequence[Transition], fps: tuple[int, int]
+    lengths: Sequence[int],
+    transitions: Sequence[Transition],
+    fps: tuple[int, int],
+    ending: Transition | None = None,
 ) -> tuple[Placed, ...]:
     """Put shots of the given lengths (frames) one after another.
 
-    ``transitions[i]`` joins shot i to the one before. A transition takes at most half of a shot, so
-    that one at each end always fits; the first shot can only fade in.
+    ``transitions[i]`` joins shot i to the one before, ``ending`` is the fade-out of the last. A
+    transition takes at most half of a shot, so that one at each end always fits; the first shot can
+    only fade in.
     """
-    enter: list[tuple[str, int]] = []
-    leave: list[tuple[str, int]] = [("cut", 0)] * len(lengths)
+
+    def frames(seconds: float, *shots: int) -> int:
+        return min(round(seconds * fps[0] / fps[1]), *(lengths[i] // 2 for i in shots), 10**9)
+
+    enter = [("cut", 0)] * len(lengths)
+    leave = [("cut", 0)] * len(lengths)
     for i, transition in enumerate(transitions):
-        kind = transition.kind
-        touched = {"fade-in": (i,), "fade-out": (i - 1,)}.get(kind, (i - 1, i))
-        wanted = round(transition.duration * fps[0] / fps[1])
-        frames = min(wanted, *(lengths[t] // 2 for t in touched))
-        enter.append(("cut", 0))
-        if frames <= 0 or kind == "cut" or (i == 0 and kind != "fade-in"):
+        if transition.kind == "fade-in":
+            enter[i] = _joined("fade-in", frames(transition.duration, i))
+        if i == 0:
             continue
-        if kind != "fade-out":
-            enter[i] = (kind, frames)
-        if kind != "fade-in":
-            leave[i - 1] = (kind, frames)
+        if transition.kind in OVERLAPPING:
+            leave[i - 1] = enter[i] = _joined(transition.kind, frames(transition.duration, i - 1, i))
+        out = transition.duration if transition.kind == "fade-out" else transition.out
+        if out > 0:
+            leave[i - 1] = _joined("fade-out", frames(out, i - 1))
+    if ending is not None and lengths:
+        leave[-1] = _joined("fade-out", frames(ending.duration, len(lengths) - 1))
     placed: list[Placed] = []
     at = 0
     for i, length in enumerate(lengths):
@@ -60,11 +68,19 @@ def place_shots(
     return tuple(placed)
 
 
+def _joined(kind: str, frames: int) -> tuple[str, int]:
+    return (kind, frames) if frames > 0 else ("cut", 0)
+
+
 def film_timeline(build: Build) -> dict[str, Placed]:
     """Places of all shots that have a take, by shot id."""
-    shown = build.shown
-    placed = place_shots([s.frames for s in shown], [s.transition for s in shown], build.storyboard.fps)
-    return {s.shot.id: p for s, p in zip(shown, placed, strict=True)}
+    return {s.shot.id: p for s, p in zip(build.shown, placed_shots(build), strict=True)}
+
+
+def placed_shots(build: Build) -> tuple[Placed, ...]:
+    """Places of the shots that have a take, in order."""
+    board, shown = build.storyboard, build.shown
+    return place_shots([s.frames for s in shown], [s.transition for s in shown], board.fps, board.ending)
 
 
 def film_frames(build: Build) -> int:

@@ -19,7 +19,7 @@ from runtime.video import VideoError, VideoWriter, join_videos, read_video, vide
 
 from .burnin import BurnIn, burn
 from .folder import write_bytes
-from .timeline import OVERLAPPING, Placed, place_shots
+from .timeline import OVERLAPPING, Placed, placed_shots
 from .types import Build, TakeMedia
 
 #: Where in a take the contact sheet's keyframes are; the middle one is the poster.
@@ -98,7 +98,7 @@ def write_animatic(path: Path, build: Build) -> None:
         return
     fps = build.storyboard.fps
     videos = [s.takes[0].media.video for s in shown]
-    placed = place_shots([s.frames for s in shown], [s.transition for s in shown], fps)
+    placed = placed_shots(build)
     scratch = Path(tempfile.mkdtemp(prefix=".animatic-", dir=path.parent))
     try:
         parts = []

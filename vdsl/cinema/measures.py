@@ -37,6 +37,8 @@ MEASURES = (
     "headroom_error",  # the same, off the size's own headroom
     "lead_room",  # more room ahead of the face than behind: −1..1, 0 where it looks at the camera
     "thirds_error",  # distance of the eyes from the upper third, share of the frame's height
+    "interest",  # share of the other points that matter (thing in hand, partner) in the frame and not hidden
+    "foreground",  # share of the picture covered by something much nearer than the subject
     "face",  # cosine between face and direction to the camera: 1 frontal, 0 profile, −1 from behind
     "clearance",  # metres from the camera to the nearest solid or person, at most 1
     "speed",  # metres a second, the greatest
@@ -56,6 +58,7 @@ class Takes:
     paper: whether sizes are meant as the paper's distances rather than landmarks on lines
     others: pillars (foot [T, 3], crown [T, 3], radius) of everybody else
     ignore: object id whose boxes hide nothing (the thing filmed)
+    interest: [T, 3] each, other points one would like to see
     """
 
     track: CameraTrack
@@ -66,18 +69,19 @@ class Takes:
     paper: bool
     others: tuple[tuple[Array, Array, float], ...]
     ignore: int | None = None
+    interest: tuple[Array, ...] = ()
 
 
 @dataclass(frozen=True, eq=False)
 class Measured:
-    """values: [P] by the names of :data:`MEASURES`; space: what rejection asks for; hidden: [P, W]"""
+    """values: [P] by the names of :data:`MEASURES`; hidden: [P, W] walls taken away
+    shown, people: [P] least distance to walls that are drawn, and to other people, metres
+    """
 
     values: dict[str, Array]
     hidden: Bools
-    room: space.Clearance
+    shown: Array
     people: Array
-    lowest: Array
-    highest: Array
 
 
 def samples(frames: int) -> NDArray[np.int64]:
@@ -98,12 +102,16 @@ def measure(takes: Takes, subject: Subject, world: World, fps: float) -> Measure
     hidden = _hidden(world, track, at, camera, axes, picture, points[:, names.index("waist")])
     values, inside = _framing(takes, subject, at, picture)
     sight_index = [names.index(n) for n in SIGHT]
-    sight = points[:, sight_index]
+    extra = [path[at] for path in takes.interest]
+    sight = np.stack([*points[:, sight_index].swapaxes(0, 1), *extra], axis=1)
     others = [(foot[at], crown[at], radius) for foot, crown, radius in takes.others]
     seen = clear_lines(world.solids, camera, sight, hidden, takes.ignore) & clear_of_people(
         camera, sight, others
     )
-    values |= _visibility(takes, inside[:, :, sight_index], seen)
+    count = len(sight_index)
+    values |= _visibility(takes, inside[:, :, sight_index], seen[..., :count])
+    values["interest"] = _interest(takes, at, camera, axes, sight[:, count:], seen[..., count:])
+    values["foreground"] = _foreground(takes, world, at, camera, axes, picture, hidden)
     values |= _motion(track, takes.roll, fps)
     values["face"] = _face(takes, subject, at, camera, points[:, names.index("eyes")])
     values["elevation"] = np.degrees(-rotation[np.arange(len(camera)), _key_sample(takes, at), 1])
@@ -112,7 +120,7 @@ def measure(takes: Takes, subject: Subject, world: World, fps: float) -> Measure
     room = space.clearance(world.solids, camera, hidden)
     people = space.to_people(camera, others)
     values["clearance"] = np.minimum(np.minimum(room.object, room.shown), people)
-    return Measured(values, hidden, room, people, camera[..., 2].min(axis=1), camera[..., 2].max(axis=1))
+    return Measured(values, hidden, room.shown, people)
 
 
 @dataclass(frozen=True, eq=False)
@@ -185,6 +193,42 @@ def _visibility(takes: Takes, inside: Bools, seen: Bools) -> dict[str, Array]:
         takes.window.sum(axis=1), 1
     )
     return {"visibility": clear / np.maximum(shown, 1), "head_visible": head}
+
+
+def _interest(
+    takes: Takes, at: NDArray[np.int64], camera: Array, axes: Array, points: Array, seen: Bools
+) -> Array:
+    if not points.shape[1]:
+        return np.ones(len(camera))
+    xy, depth = project(points[None], camera, axes, takes.track.focal[:, at], takes.track.sensor)
+    inside = (depth > 0.05) & (xy > 0.02).all(-1) & (xy < 0.98).all(-1)
+    return _mean((inside & seen).mean(axis=-1), takes.window)
+
+
+def _foreground(
+    takes: Takes,
+    world: World,
+    at: NDArray[np.int64],
+    camera: Array,
+    axes: Array,
+    picture: _Picture,
+    hidden: Bools,
+) -> Array:
+    """Eight looks across the frame, half way to the subject, on every third sampled frame."""
+    some = np.arange(0, len(at), 3)
+    track = takes.track
+    depth = 0.5 * np.maximum(picture.depth[:, some, picture.names.index("pocket")], 0.2)
+    half = depth[..., None, None] / (2 * track.focal[:, at[some], None, None])
+    looks = np.array([(x, y) for x in (-0.85, -0.3, 0.3, 0.85) for y in (-0.6, 0.5)])
+    ax = axes[:, some, None]
+    points = (
+        camera[:, some, None]
+        + depth[..., None, None] * ax[..., 2, :]
+        + half * track.sensor[0] * looks[:, :1] * ax[..., 0, :]
+        + half * track.sensor[1] * looks[:, 1:] * ax[..., 1, :]
+    )
+    seen = clear_lines(world.solids, camera[:, some], points, hidden, takes.ignore)
+    return np.asarray(1.0 - seen.mean(axis=(1, 2)))
 
 
 def _face(takes: Takes, subject: Subject, at: NDArray[np.int64], camera: Array, eyes: Array) -> Array:

@@ -9,10 +9,11 @@ from numpy.typing import NDArray
 
 #: What counts, and how much; the weights sum to one.
 WEIGHTS = {
-    "visibility": 0.20,
-    "in_frame": 0.18,
-    "face": 0.16,
-    "size": 0.10,
+    "visibility": 0.16,
+    "in_frame": 0.16,
+    "face": 0.14,
+    "interest": 0.10,
+    "size": 0.08,
     "headroom": 0.08,
     "lead_room": 0.06,
     "thirds": 0.06,
@@ -28,6 +29,7 @@ def parts(measures: Mapping[str, NDArray[np.float64] | float]) -> dict[str, NDAr
     return {
         "visibility": m["visibility"] * (0.5 + 0.5 * m["head_visible"]),
         "in_frame": m["in_frame"],
+        "interest": m["interest"],
         # three-quarter to frontal is best; from straight behind is worst
         "face": np.clip((m["face"] + 0.75) / 1.45, 0.0, 1.0),
         "size": np.exp(-((m["size_drift"] / 0.7) ** 2)),
@@ -42,7 +44,8 @@ def parts(measures: Mapping[str, NDArray[np.float64] | float]) -> dict[str, NDAr
 def geometry_scores(measures: Mapping[str, NDArray[np.float64] | float]) -> NDArray[np.float64]:
     """Scores 0..1 of takes whose measures are arrays [P]."""
     total = sum(WEIGHTS[name] * value for name, value in parts(measures).items())
-    return np.asarray(total * (1.0 - 0.5 * np.asarray(measures["backdrop_gap"], float)))
+    gaps, near = (np.asarray(measures[k], float) for k in ("backdrop_gap", "foreground"))
+    return np.asarray(total * (1.0 - 0.5 * gaps) * (1.0 - 0.6 * near))
 
 
 def geometry_score(measures: Mapping[str, float]) -> float:

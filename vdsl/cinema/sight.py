@@ -82,12 +82,12 @@ def clear_lines(
 ) -> Bools:
     """Whether each point can be seen.
 
-    camera: [P, F, 3]; points: [F, K, 3]; hidden: [P, W] walls taken away; ignore: id of an object whose
-    boxes do not count (the thing filmed)
+    camera: [P, F, 3]; points: [F, K, 3], or [P, F, K, 3] where every take has its own
+    hidden: [P, W] walls taken away; ignore: id of an object whose boxes do not count (the thing filmed)
     returns: bool [P, F, K]
     """
     P, F = camera.shape[:2]
-    K = points.shape[1]
+    K = points.shape[-2]
     boxes = np.arange(len(solids.centre))
     if ignore is not None:
         boxes = boxes[solids.object != ignore]
@@ -98,7 +98,8 @@ def clear_lines(
     if hidden.shape[1]:
         near &= ~np.where(wall >= 0, hidden[:, np.maximum(wall, 0)], False)[:, None, :]
     p, f, b = np.nonzero(near)
-    blocked = _cut(solids, boxes[b], camera[p, f], points[f])  # [M, K]
+    ends = points[f] if points.ndim == 3 else points[p, f]
+    blocked = _cut(solids, boxes[b], camera[p, f], ends)  # [M, K]
     seen = np.ones((P * F, K), bool)
     m, k = np.nonzero(blocked)
     seen[p[m] * F + f[m], k] = False
@@ -107,15 +108,15 @@ def clear_lines(
 
 def _near(solids: Solids, boxes: NDArray[np.int64], camera: Array, points: Array) -> Bools:
     """Boxes whose bounding sphere comes close to the line from camera to the middle of the points."""
-    middle = points.mean(axis=1)
-    spread = np.linalg.norm(points - middle[:, None], axis=-1).max(axis=1)
-    ray = (middle[None] - camera).astype(np.float32)
+    middle = points.mean(axis=-2)
+    spread = np.linalg.norm(points - middle[..., None, :], axis=-1).max(axis=-1)
+    ray = (middle - camera).astype(np.float32)
     square = np.maximum((ray**2).sum(-1), 1e-9)
     start = (solids.centre[boxes] - camera[:, :, None]).astype(np.float32)
     t = np.clip(np.einsum("pfbk,pfk->pfb", start, ray) / square[..., None], 0.0, 1.0)
     away = np.linalg.norm(start - t[..., None] * ray[:, :, None], axis=-1)
     radius = np.linalg.norm(solids.half[boxes], axis=1)
-    return np.asarray(away < radius + spread[None, :, None])
+    return np.asarray(away < radius + spread[..., None])
 
 
 def _cut(solids: Solids, box: NDArray[np.int64], camera: Array, points: Array) -> Bools:

@@ -21,15 +21,15 @@ from ..cinema import rig_cinema, rig_paper
 from ..cinema.measures import Measured, Takes, measure, samples
 from ..cinema.score import geometry_scores
 from ..cinema.sizes import Size, size_of
-from ..cinema.space import Stage, stage_of
+from ..cinema.space import stage_of
 from ..cinema.subject import Subject, person, place, thing
 from ..cinema.track import CameraTrack
 from ..lang.ir import Shot, Target
 from ..library import Catalog
 from .drawing import draw, generator
-from .rejection import REASONS, SOFT, reasons
+from .rejection import REASONS, SOFT, no_room, reasons
 from .shooting import Shooting, shoot
-from .types import CameraProposal, ProposalGrid, StoryProposal
+from .types import STILL, CameraProposal, ProposalGrid, StoryProposal
 
 _ROUNDS = 5
 _FEW = 8  # with fewer takes than this, ones that only look less well are let back in
@@ -83,9 +83,9 @@ def propose_cameras(shot: Shot, stories: Sequence[StoryProposal], filming: Filmi
         share = max(good / considered, 0.08) if considered else 0.75
         count = int(np.clip((wanted - good) / share, 16, 5 * wanted))
         rng = generator(filming.seed, shot.id, f"cameras {number}")
-        for batch in _consider(shot, stories, subjects, filming, count, rng):
+        considered += count
+        for batch in _consider(shot, stories, subjects, filming, count, rng, rejected):
             batches.append(batch)
-            considered += len(batch.reason)
             good += int((batch.reason < 0).sum())
             rejected.update(REASONS[k] for k in batch.reason[batch.reason >= 0])
         if good >= wanted:
@@ -102,7 +102,7 @@ def propose_cameras(shot: Shot, stories: Sequence[StoryProposal], filming: Filmi
 def subject_of(shot: Shot, story: StoryProposal, filming: Filming) -> Subject:
     """Whom or what the shot's cameras are about."""
     focus = shot.focus
-    if focus is None:
+    if focus is None or _establishes(shot, story):
         return _room_subject(filming, story.frames)
     if focus.kind == "character" and focus.path[-1] in story.performances:
         acted = story.performances[focus.path[-1]]
@@ -110,6 +110,12 @@ def subject_of(shot: Shot, story: StoryProposal, filming: Filming) -> Subject:
         return person(focus.path[-1], skeleton, acted.world_from_joint, acted.position, acted.heading)
     item = find_object(filming.world, focus)
     return _room_subject(filming, story.frames) if item is None else _thing_subject(item, story)
+
+
+def _establishes(shot: Shot, story: StoryProposal) -> bool:
+    """Whether a shot in which nobody acts shows the place: it is wide, and nobody was named as its focus."""
+    named = shot.focus is not None and shot.focus.span.text == shot.focus.written
+    return story.variant == STILL and not named and set(shot.scales) <= {"wide", "full"}
 
 
 def find_object(world: World, target: Target) -> WorldObject | None:
@@ -151,8 +157,9 @@ def _consider(
     filming: Filming,
     count: int,
     rng: np.random.Generator,
+    rejected: Counter[str],
 ) -> list[_Batch]:
-    """Draw, shoot, measure and judge so many candidates."""
+    """Draw, shoot, measure and judge so many candidates; counts those without room in ``rejected``."""
     sample = draw(shot, len(stories), count, rng)
     out = []
     for s, subject in enumerate(subjects):
@@ -161,10 +168,16 @@ def _consider(
             continue
         story = stories[s]
         shooting = shoot(shot, subject, sample, rows, filming.rig, filming.sensor, filming.fps)
+        stage = stage_of(filming.world, subject.position[[0, -1]])
+        early = no_room(shooting, subject, filming.world.solids, stage, samples(subject.frames))
+        rejected.update(REASONS[k] for k in early[early >= 0])
+        kept = np.flatnonzero(early < 0)
+        if not len(kept):
+            continue
+        shooting = shooting.only(kept)
         takes = _takes(shot, subject, shooting, story, filming)
         measured = measure(takes, subject, filming.world, filming.fps)
-        stage = _stage(filming, subject)
-        reason = reasons(shooting, measured, subject, stage, takes)
+        reason = reasons(shooting, measured, subject)
         out.append(
             _Batch(
                 s,
@@ -177,10 +190,6 @@ def _consider(
             )
         )
     return out
-
-
-def _stage(filming: Filming, subject: Subject) -> Stage:
-    return stage_of(filming.world, subject.position[[0, -1]])
 
 
 def _takes(shot: Shot, subject: Subject, shooting: Shooting, story: StoryProposal, filming: Filming) -> Takes:
@@ -199,7 +208,15 @@ def _takes(shot: Shot, subject: Subject, shooting: Shooting, story: StoryProposa
             others.append((foot, crown, _MARGIN))
     window = shooting.window(samples(subject.frames), subject.frames)
     return Takes(
-        shooting.track, sizes, window, shooting.key, shot.roll, filming.rig == "paper", tuple(others), ignore
+        shooting.track,
+        sizes,
+        window,
+        shooting.key,
+        shot.roll,
+        filming.rig == "paper",
+        tuple(others),
+        ignore,
+        story.interest,
     )
 
 

@@ -5,10 +5,12 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from runtime.world import Solids
+
 from ..cinema.angles import LOOKS_DOWN, LOOKS_UP
-from ..cinema.measures import Measured, Takes
+from ..cinema.measures import Measured
 from ..cinema.moves import FLOOR_CLEARANCE, family
-from ..cinema.space import Stage
+from ..cinema.space import Stage, clearance
 from ..cinema.subject import Subject
 from .shooting import Shooting
 
@@ -49,36 +51,58 @@ _OUTSIDE = 3.0
 _FASTEST, _TURNS = 5.0, 130.0  # metres and degrees a second
 
 
-def reasons(
-    shooting: Shooting, measured: Measured, subject: Subject, stage: Stage, takes: Takes
+def no_room(
+    shooting: Shooting, subject: Subject, solids: Solids, stage: Stage, at: NDArray[np.int64]
 ) -> NDArray[np.int64]:
-    """Index into :data:`REASONS` of every candidate [P], −1 for those to keep."""
+    """What can be said before anything is looked at: index into :data:`REASONS` [P], −1 to go on."""
+    camera = shooting.track.position[:, at]
+    none = np.zeros((len(camera), 0), bool)
+    room = clearance(solids, camera, none)
+    ceiling = stage.ceiling if stage.ceiling is not None else np.inf
+    return _first(
+        {
+            "below_floor": camera[..., 2].min(axis=1) < FLOOR_CLEARANCE - 1e-6,
+            "in_wall": room.wall < _IN_WALL,
+            "in_object": room.object < _NEAR_OBJECT * _arm(shooting),
+            "above_ceiling": camera[..., 2].max(axis=1) > ceiling - 0.1,
+            "too_far_outside": stage.outside(camera) > _OUTSIDE,
+        },
+        len(camera),
+    )
+
+
+def _arm(shooting: Shooting) -> float:
+    """The paper's close-ups stand within arm's reach."""
+    return 0.5 if shooting.rig == "paper" else 1.0
+
+
+def _first(asked: dict[str, NDArray[np.bool_]], count: int) -> NDArray[np.int64]:
+    out = np.full(count, -1)
+    for reason in reversed(REASONS):
+        if reason in asked:
+            out[asked[reason]] = REASONS.index(reason)
+    return out
+
+
+def reasons(shooting: Shooting, measured: Measured, subject: Subject) -> NDArray[np.int64]:
+    """Index into :data:`REASONS` of every candidate that has room [P], −1 for those to keep."""
     v, track = measured.values, shooting.track
     paper = shooting.rig == "paper"
-    near = 0.5 if paper else 1.0  # the paper's close-ups stand within arm's reach
-    ceiling = stage.ceiling if stage.ceiling is not None else np.inf
     own = np.linalg.norm(track.position - subject.landmarks["eyes"][None], axis=-1).min(axis=1)
     moving = np.array([family(m) in ("push", "pull", "zoom", "tilt", "pan") for m in shooting.movements])
     drift = np.where(moving, 0.0, v["size_drift"])
     walked = float(np.linalg.norm(np.diff(subject.position, axis=0), axis=1).sum())
     asked = {
-        "below_floor": measured.lowest < FLOOR_CLEARANCE - 1e-6,
-        "in_wall": (measured.room.wall < _IN_WALL) | (measured.room.shown < _NEAR_WALL * near),
-        "in_object": measured.room.object < _NEAR_OBJECT * near,
+        "in_wall": measured.shown < _NEAR_WALL * _arm(shooting),
         "in_person": (measured.people < _NEAR_PERSON) | ((own < _NEAR_FACE) & (subject.kind == "person")),
-        "above_ceiling": measured.highest > ceiling - 0.1,
-        "too_far_outside": stage.outside(track.position) > _OUTSIDE,
         "subject_out_of_frame": v["in_frame"] < (0.5 if walked > 0.5 else 0.7),
-        "subject_hidden": (v["visibility"] < 0.6) | (v["head_visible"] < 0.5),
+        "subject_hidden": (v["visibility"] < 0.6) | (v["head_visible"] < 0.5) | (v["foreground"] > 0.5),
         "wrong_size": (v["size_error"] > (0.6 if paper else 0.25)) | (drift > 0.9),
         "wrong_angle": _wrong_angle(shooting, v["elevation"]),
         "too_fast": (v["speed"] > _FASTEST) | (v["angular_speed"] > _TURNS),
         "missing_backdrop": v["backdrop_gap"] > 0.12,
     }
-    out = np.full(len(shooting.movements), -1)
-    for k in reversed(range(len(REASONS))):
-        out[asked[REASONS[k]]] = k
-    return out
+    return _first(asked, len(shooting.movements))
 
 
 def _wrong_angle(shooting: Shooting, elevation: NDArray[np.float64]) -> NDArray[np.bool_]:

@@ -51,6 +51,23 @@ class Shooting:
         lam = np.unique(self.draw.lam, return_inverse=True)[1]
         return np.asarray(2 * lam + self.draw.key)
 
+    def only(self, rows: NDArray[np.int64]) -> Shooting:
+        """Some of the candidates."""
+        t = self.track
+        return Shooting(
+            self.rig,
+            CameraTrack(t.position[rows], t.rotation[rows], t.focal[rows], t.look_at[rows], t.sensor),
+            self.order[rows],
+            tuple(self.movements[p] for p in rows),
+            tuple(self.scales[p] for p in rows),
+            tuple(self.angles[p] for p in rows),
+            self.key[rows],
+            Draw(*(getattr(self.draw, f.name)[rows] for f in fields(Draw))),
+            self.lifted[rows],
+            self.relative[rows],
+            self.height[rows],
+        )
+
     def window(self, at: NDArray[np.int64], frames: int) -> NDArray[np.bool_]:
         """bool [P, F]: sampled frames at which the subject is meant to be in the picture."""
         time = at / max(frames - 1, 1)

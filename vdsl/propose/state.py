@@ -17,7 +17,7 @@ from ..lang.diagnostics import Report
 from ..lang.ir import Placement, Scene, Target
 
 PERSON_RADIUS = 0.22  # how much room somebody else takes up on the floor, metres
-_APART = 0.75  # least distance between people who are placed by default, metres
+_APART = 1.1  # least distance between people who are placed by default, metres
 
 
 @dataclass(frozen=True, eq=False)

@@ -11,7 +11,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from itertools import product
 
-from runtime.body.skeleton import Skeleton
+import numpy as np
+from numpy.typing import NDArray
+
+from runtime.body.skeleton import JOINT, Skeleton
 from runtime.motion.perform import perform
 from runtime.motion.types import ActionClip, Actor, SceneMotion, Task
 from runtime.nav import Discs
@@ -25,7 +28,7 @@ from .cameras import Filming, propose_cameras
 from .drawing import generator
 from .state import SceneState, opening_state
 from .tasks import Errand, disc, errand, speaking
-from .types import Performance, ProposalGrid, StoryProposal
+from .types import STILL, Performance, ProposalGrid, StoryProposal
 
 __all__ = ["SceneState", "Told", "advance", "opening_state", "propose", "propose_story", "tell"]
 
@@ -63,8 +66,8 @@ def tell(
         motion = _perform(state, errands, filming.skeletons, (variant, path), filming.fps, seed, shot)
         if index == 0:
             end = replace(state, actors=motion.end_actors, props=motion.end_props)
-        name = next(iter(errands.values())).task.clip.variants[variant].name if errands else "still"
-        proposals.append(_proposal(index, name, path, motion))
+        name = next(iter(errands.values())).task.clip.variants[variant].name if errands else STILL
+        proposals.append(_proposal(index, name, path, motion, _interest(errands, motion)))
     return Told(tuple(proposals), end)
 
 
@@ -150,9 +153,31 @@ def _perform(
     return perform(actors, tasks, state.props, fps, seed, duration)
 
 
-def _proposal(index: int, variant: str, path: int, motion: SceneMotion) -> StoryProposal:
+def _interest(errands: Mapping[str, Errand], motion: SceneMotion) -> tuple[NDArray[np.float64], ...]:
+    """Paths of what the line is about besides whoever acts first: its targets, and everybody else who acts."""
+    out: list[NDArray[np.float64]] = []
+    names = dict.fromkeys(list(errands)[1:])
+    for item in list(errands.values())[:1]:
+        for point in (item.task.target, item.task.second):
+            if point is None:
+                continue
+            if point.character is not None:
+                names[point.character] = None
+            elif point.object in motion.props:
+                out.append(motion.props[point.object][:, :3, 3].astype(float))
+            else:
+                out.append(np.tile(point.position, (motion.frames, 1)).astype(float))
+    if not errands:
+        names = dict.fromkeys(motion.position)
+    heads = (motion.world_from_joint[n][:, JOINT["head"], :3, 3].astype(float) for n in names)
+    return (*out, *heads)
+
+
+def _proposal(
+    index: int, variant: str, path: int, motion: SceneMotion, interest: tuple[NDArray[np.float64], ...]
+) -> StoryProposal:
     performances = {
         name: Performance(motion.world_from_joint[name], motion.position[name], motion.heading[name])
         for name in motion.world_from_joint
     }
-    return StoryProposal(index, variant, path, motion.frames, performances, motion.props)
+    return StoryProposal(index, variant, path, motion.frames, performances, motion.props, interest)

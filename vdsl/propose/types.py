@@ -9,6 +9,9 @@ from numpy.typing import NDArray
 
 from ..cinema.track import CameraTrack
 
+#: The variant of a line on which nobody acts.
+STILL = "still"
+
 
 @dataclass(frozen=True, eq=False)
 class Performance:
@@ -31,6 +34,8 @@ class StoryProposal:
     variant: name of the clip variant; path: index m of the path (0 where nobody travels)
     frames: T; performances: by character name, everyone in the scene; props: by object id of the
     movable objects, float32 [T, 4, 4] world_from_object
+    interest: float64 [T, 3] each, points besides the subject that make the action readable: the thing in
+        hand, the person spoken to
     """
 
     index: int
@@ -39,6 +44,7 @@ class StoryProposal:
     frames: int
     performances: dict[str, Performance]
     props: dict[int, NDArray[np.float32]]
+    interest: tuple[NDArray[np.float64], ...] = ()
 
 
 @dataclass(frozen=True, eq=False)

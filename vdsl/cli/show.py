@@ -20,6 +20,7 @@ from ..lang.source import Span
 
 SCHEMA = "vds.diagnostics/1"
 WIDTH = 116
+MOST_PRINTED = 200
 _STYLES = {
     "error": "\x1b[1;31m", "warning": "\x1b[1;33m", "note": "\x1b[1;36m", "help": "\x1b[1;32m",
     "frame": "\x1b[34m", "bold": "\x1b[1m",
@@ -83,7 +84,9 @@ def as_text(diagnostics: Iterable[Diagnostic], colour: bool = False) -> str:
     if not found:
         return ""
     paint = _Paint(colour)
-    parts = [_one(d, paint) for d in found]
+    parts = [_one(d, paint) for d in found[:MOST_PRINTED]]
+    if len(found) > MOST_PRINTED:
+        parts.append(f"… and {len(found) - MOST_PRINTED:,} more; `--format json` has them all")
     errors = sum(d.severity == "error" for d in found)
     warnings = len(found) - errors
     counts = [_count(n, word) for n, word in ((errors, "error"), (warnings, "warning")) if n]

@@ -82,9 +82,13 @@ class BeatReader:
         if meant is None:  # walks, walking, walked
             meant = next((a for a in self._actions if len(a) > 2 and word.startswith(a)), None)
         self.report.error(
-            "VDS071", rest[0].span, label=f"no action is called `{rest[0].text}`",
-            help=f"actions are {listing(self.catalog.names('action'), 40)}", suggestion=meant, fix=meant,
-        )  # fmt: skip
+            "VDS071",
+            rest[0].span,
+            label=f"no action is called `{rest[0].text}`",
+            help=f"actions are {listing(self.catalog.names('action'), 40)}",
+            suggestion=meant,
+            fix=meant,
+        )
         return None, 0
 
     # -- to what ---------------------------------------------------------------------
@@ -146,9 +150,11 @@ class BeatReader:
         kind_words = " or ".join(_KIND_WORDS.get(kind, kind) for kind in kinds) or "a target"
         if wants == "required" and not named:
             self.report.error(
-                "VDS072", node.span, label=f"`{action}` needs {kind_words}",
+                "VDS072",
+                node.span,
+                label=f"`{action}` needs {kind_words}",
                 help=f"as in `({node.words[0].text} {action} …)`",
-            )  # fmt: skip
+            )
             return False
         if wants == "none" and named:
             self.report.error(
@@ -157,9 +163,11 @@ class BeatReader:
             return False
         if second == "required" and len(named) == 1:
             self.report.error(
-                "VDS072", node.span, label=f"`{action}` needs a second target",
+                "VDS072",
+                node.span,
+                label=f"`{action}` needs a second target",
                 help=f"as in `({node.words[0].text} {action} {named[0].written} to …)`",
-            )  # fmt: skip
+            )
             return False
         if second == "none" and len(named) == 2:
             self.report.error(

@@ -30,7 +30,7 @@ _Term: TypeAlias = "ast.Star | tuple[tuple[str, Span], ...]"
 
 
 def read_camera(node: ast.CameraNode | None, report: Report) -> CameraWords:
-    """The words of a camera line. Order is free where words say what they are; ``*`` takes the next free slot."""
+    """The words of a camera line, in any order, as words say what they are; ``*`` takes the next free slot."""
     if node is None or not node.words:
         return FREE
     found: dict[str, tuple[str, ...]] = {}
@@ -43,9 +43,11 @@ def read_camera(node: ast.CameraNode | None, report: Report) -> CameraWords:
     free = [slot for slot in SLOTS if slot not in found]
     if len(stars) > len(free):
         report.error(
-            "VDS043", stars[-1].span, label="there is nothing left for this `*`",
+            "VDS043",
+            stars[-1].span,
+            label="there is nothing left for this `*`",
             help="a camera line has a movement, a scale and an angle",
-        )  # fmt: skip
+        )
     return CameraWords(
         found.get("movement") or words.ANY["movement"],
         found.get("scale") or words.ANY["scale"],
@@ -114,9 +116,11 @@ def _take(term: tuple[tuple[str, Span], ...], found: dict[str, tuple[str, ...]],
             _warn_mcs(span, report)
         if slot is not None and meaning.slot != slot:
             report.error(
-                "VDS042", span, label=f"`{span.text}` is {_a(meaning.slot)}, a choice is among {slot}s",
+                "VDS042",
+                span,
+                label=f"`{span.text}` is {_a(meaning.slot)}, a choice is among {slot}s",
                 help="separate movement, scale and angle with spaces",
-            )  # fmt: skip
+            )
             continue
         slot = meaning.slot
         meant.extend(w for w in meaning.words if w not in meant)
@@ -144,9 +148,13 @@ def _unknown(word: str, span: Span, found: dict[str, tuple[str, ...]], report: R
             "angle": words.ANY["angle"],
         }
         report.error(
-            "VDS041", span, label=f"`{span.text}` is {_a(slot)} of film grammar that cannot be shot yet",
-            help=words.hint(word) or f"{slot}s now are {listing(known[slot], 20)}", suggestion=near, fix=near,
-        )  # fmt: skip
+            "VDS041",
+            span,
+            label=f"`{span.text}` is {_a(slot)} of film grammar that cannot be shot yet",
+            help=words.hint(word) or f"{slot}s now are {listing(known[slot], 20)}",
+            suggestion=near,
+            fix=near,
+        )
         found.setdefault(slot, ())
         return None
     meant = nearest(word, [*words.CAMERA_WORDS, *words.NOT_YET])
@@ -154,9 +162,13 @@ def _unknown(word: str, span: Span, found: dict[str, tuple[str, ...]], report: R
         meaning = words.CAMERA_WORDS[meant]
         canonical = meaning.words[0] if len(meaning.words) == 1 else meant
         report.error(
-            "VDS040", span, label="the camera does not know this word", suggestion=canonical, fix=canonical,
+            "VDS040",
+            span,
+            label="the camera does not know this word",
+            suggestion=canonical,
+            fix=canonical,
             help=_slot_help(meaning.slot),
-        )  # fmt: skip
+        )
         found.setdefault(meaning.slot, ())
         return None
     free = [slot for slot in SLOTS if slot not in found]
@@ -171,7 +183,8 @@ def _unknown(word: str, span: Span, found: dict[str, tuple[str, ...]], report: R
 
 def _slot_help(slot: str) -> str:
     if slot == "movement":
-        return "movements: static, follow, push, pull, zoom, tilt, pan, dolly, pedestal, arc (and -in, -out, -up, -down, -left, -right)"
+        families = "static, follow, push, pull, zoom, tilt, pan, dolly, pedestal, arc"
+        return f"movements: {families} (and -in, -out, -up, -down, -left, -right)"
     if slot == "scale":
         return f"scales: {', '.join(words.PAPER_SCALES)}, wide"
     return f"angles: {', '.join(words.ANY['angle'])}"
@@ -179,9 +192,12 @@ def _slot_help(slot: str) -> str:
 
 def _warn_mcs(span: Span, report: Report) -> None:
     report.warn(
-        "VDS044", span, label="MCS is a medium close shot, not a cowboy shot; taken as close-up",
-        help="say close-up for head and shoulders, or medium for down to the waist", suggestion="close-up",
-    )  # fmt: skip
+        "VDS044",
+        span,
+        label="MCS is a medium close shot, not a cowboy shot; taken as close-up",
+        help="say close-up for head and shoulders, or medium for down to the waist",
+        suggestion="close-up",
+    )
 
 
 def _a(word: str) -> str:

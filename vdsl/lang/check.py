@@ -49,6 +49,7 @@ class _Stage:
     scope: Scope | None
     members: tuple[str, ...]
     span: Span
+    reader: BeatReader | None = None
     placements: dict[str, Placement] = field(default_factory=dict)
     acted: set[str] = field(default_factory=set)
 
@@ -120,9 +121,12 @@ class _Checker:
             if isinstance(statement, ast.Header):
                 if begun is not None:
                     self.report.error(
-                        "VDS035", statement.span, label="header lines stand before the first scene",
-                        help="move it up, below `storyboard`", notes=[(begun.span, "the story begins here")],
-                    )  # fmt: skip
+                        "VDS035",
+                        statement.span,
+                        label="header lines stand before the first scene",
+                        help="move it up, below `storyboard`",
+                        notes=[(begun.span, "the story begins here")],
+                    )
                 read_header(statement, self.settings, self.report)
         said, over = self.settings, self.overrides
         self.fps = over.fps or said.fps or (24, 1)
@@ -162,9 +166,11 @@ class _Checker:
             return  # a file of definitions, for others to use
         last = self.script.statements[-1].span
         self.report.error(
-            "VDS034", Span(last.source, last.start, last.end), label="the script ends and nothing has happened yet",
+            "VDS034",
+            Span(last.source, last.start, last.end),
+            label="the script ends and nothing has happened yet",
             help="add a story line, as in `(anna walk door)`",
-        )  # fmt: skip
+        )
 
     # -- characters ------------------------------------------------------------------
 
@@ -174,15 +180,19 @@ class _Checker:
             self.report.error("VDS066", line.name.span, label="a character's name has no dots")
         if name in self.characters:
             self.report.error(
-                "VDS066", line.name.span, label=f"there is a character `{name}` already",
+                "VDS066",
+                line.name.span,
+                label=f"there is a character `{name}` already",
                 notes=[(self.characters[name].span, "the first one")],
-            )  # fmt: skip
+            )
             return
         if isinstance(line.cast, ast.Text):
             self.report.error(
-                "VDS017", line.cast.span, label="characters from files are not read yet",
+                "VDS017",
+                line.cast.span,
+                label="characters from files are not read yet",
                 help=f"take one of the library's: {listing(self.catalog.names('cast'))}",
-            )  # fmt: skip
+            )
             self.characters[name] = Character(name, "", (), line.span)
             return
         callee = line.cast.callee if isinstance(line.cast, ast.Call) else line.cast
@@ -212,9 +222,13 @@ class _Checker:
         meant = nearest(name.text, names)
         what = {"cast": "cast member", "set": "set"}[kind]
         self.report.error(
-            "VDS064" if kind == "cast" else "VDS062", name.span, label=f"no {what} is called `{name.text}`",
-            help=f"there are {listing(names, 20)}", suggestion=meant, fix=meant,
-        )  # fmt: skip
+            "VDS064" if kind == "cast" else "VDS062",
+            name.span,
+            label=f"no {what} is called `{name.text}`",
+            help=f"there are {listing(names, 20)}",
+            suggestion=meant,
+            fix=meant,
+        )
         return None
 
     # -- scenes ----------------------------------------------------------------------
@@ -243,9 +257,13 @@ class _Checker:
             return time.text if time else None
         meant = nearest(time.text, words.TIMES)
         self.report.error(
-            "VDS063", time.span, label=f"`{time.text}` is no time of day", help=f"it may be {listing(words.TIMES)}",
-            suggestion=meant, fix=meant,
-        )  # fmt: skip
+            "VDS063",
+            time.span,
+            label=f"`{time.text}` is no time of day",
+            help=f"it may be {listing(words.TIMES)}",
+            suggestion=meant,
+            fix=meant,
+        )
         return None
 
     def _set(self, written: ast.Name) -> tuple[str, tuple[str, ...], str, SetNode | None]:
@@ -256,9 +274,13 @@ class _Checker:
         )
         if name.text not in self.catalog.names("set") and (near := self._room_elsewhere(written)):
             self.report.error(
-                "VDS062", written.span, label=f"no set is called `{written.text}`", help="say which set the room is in",
-                suggestion=near, fix=near,
-            )  # fmt: skip
+                "VDS062",
+                written.span,
+                label=f"no set is called `{written.text}`",
+                help="say which set the room is in",
+                suggestion=near,
+                fix=near,
+            )
             return name.text, (), "day", None
         definition = self._definition("set", name)
         root: SetNode | None = getattr(definition, "root", None)
@@ -271,9 +293,13 @@ class _Checker:
             rooms = [".".join((root.name, *path)) for path, each in walk(root) if each.kind in ROOMS and path]
             meant = nearest(written.text, rooms)
             self.report.error(
-                "VDS062", written.span, label=f"`{name.text}` has no room `{'.'.join(room)}`",
-                help=f"it has {listing(rooms)}" if rooms else "it has no rooms", suggestion=meant, fix=meant,
-            )  # fmt: skip
+                "VDS062",
+                written.span,
+                label=f"`{name.text}` has no room `{'.'.join(room)}`",
+                help=f"it has {listing(rooms)}" if rooms else "it has no rooms",
+                suggestion=meant,
+                fix=meant,
+            )
             return name.text, (), time, None
         return name.text, room, time, root
 
@@ -324,15 +350,20 @@ class _Checker:
             return
         if name in stage.placements and stage.placements[name].at.kind != "free":
             self.report.error(
-                "VDS068", line.span, label=f"{name} is placed already", help="in a scene everyone is placed once",
+                "VDS068",
+                line.span,
+                label=f"{name} is placed already",
+                help="in a scene everyone is placed once",
                 notes=[(stage.placements[name].span, "first here")],
-            )  # fmt: skip
+            )
             return
         if name in stage.acted:
             self.report.error(
-                "VDS068", line.span, label=f"{name} has acted already, and is where that left them",
+                "VDS068",
+                line.span,
+                label=f"{name} has acted already, and is where that left them",
                 help="place people before the first story line, or let them walk",
-            )  # fmt: skip
+            )
             return
         self._place(name, line, stage)
 
@@ -353,9 +384,13 @@ class _Checker:
             place = line.at or line.posture or line.character
             seats = stage.scope.seats()
             self.report.error(
-                "VDS069", place.span, label=f"one cannot sit at `{place.text}`" if line.at else "sit where?",
-                help=f"there are {listing(dict.fromkeys(seats))} to sit on" if seats else "this scene has no seats",
-            )  # fmt: skip
+                "VDS069",
+                place.span,
+                label=f"one cannot sit at `{place.text}`" if line.at else "sit where?",
+                help=f"there are {listing(dict.fromkeys(seats))} to sit on"
+                if seats
+                else "this scene has no seats",
+            )
         free = Target("free", (), "", line.span)
         stage.placements[name] = Placement(name, at or free, facing, posture, line.span)
 
@@ -366,9 +401,11 @@ class _Checker:
         if self.stage is None and not any(s.name == "" for s in self.scenes):
             sets = self.catalog.names("set")
             self.report.error(
-                "VDS063", span, label="no scene has begun",
+                "VDS063",
+                span,
+                label="no scene has begun",
                 help=f"put a line like `scene {sets[0]}` above" if sets else "put a `scene` line above",
-            )  # fmt: skip
+            )
         return self.stage
 
     # -- the story -------------------------------------------------------------------
@@ -378,8 +415,9 @@ class _Checker:
         if stage is None:
             return
         names = tuple(self.characters)
-        reader = BeatReader(self.catalog, names, stage.scope, self.report)
-        beats = [self._beat(reader, each, stage) for each in node.beats]
+        if stage.reader is None or stage.reader.characters != names:
+            stage.reader = BeatReader(self.catalog, names, stage.scope, self.report)
+        beats = [self._beat(stage.reader, each, stage) for each in node.beats]
         done = tuple(beat for beat in beats if beat is not None)
         self._together(done)
         context = LineContext(
@@ -405,9 +443,11 @@ class _Checker:
             return
         if stage.scope is not None:
             self.report.warn(
-                "VDS079", word.span, label=f"{word.text} has not been placed in scene {stage.name}",
-                help=f"a line like `{word.text} at NAME` above says where; without it the first free spot is taken",
-            )  # fmt: skip
+                "VDS079",
+                word.span,
+                label=f"{word.text} has not been placed in scene {stage.name}",
+                help=f"a line like `{word.text} at NAME` above says where; else it is the first free spot",
+            )
         free = Target("free", (), "", word.span)
         stage.placements[word.text] = Placement(word.text, free, None, "standing", word.span)
 
@@ -417,9 +457,12 @@ class _Checker:
         for beat in beats:
             if beat.character in seen:
                 self.report.error(
-                    "VDS076", beat.span, label=f"{beat.character} does two things at once",
-                    help="put it on a line of its own", notes=[(seen[beat.character].span, "the first")],
-                )  # fmt: skip
+                    "VDS076",
+                    beat.span,
+                    label=f"{beat.character} does two things at once",
+                    help="put it on a line of its own",
+                    notes=[(seen[beat.character].span, "the first")],
+                )
             seen[beat.character] = beat
 
     def _subject(self, beats: tuple[Beat, ...], stage: _Stage) -> Target | None:

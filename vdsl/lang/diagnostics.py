@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass, field
+from functools import lru_cache
 
 from .source import Span
 
@@ -31,6 +32,10 @@ class Diagnostic:
     suggestion: str | None = None
     fix: str | None = None
     notes: tuple[tuple[Span, str], ...] = ()
+
+
+#: No more are kept: a file with so many is no script.
+MOST_FINDINGS = 20_000
 
 
 @dataclass
@@ -80,6 +85,8 @@ class Report:
     ) -> None:
         from .codes import title  # here: the table is text that only a finding needs
 
+        if len(self._found) >= MOST_FINDINGS:
+            return
         key = (code, span.source.name, span.start, span.end)
         entry = Diagnostic(code, severity, title(code), span, label, help, suggestion, fix, notes)
         self._found.setdefault(key, entry)
@@ -112,6 +119,11 @@ def nearest(word: str, candidates: Iterable[str]) -> str | None:
     Near is: the same but for case and ``_``; few slips of the finger (a third of the letters at most);
     or the same beginning, four letters or more.
     """
+    return _nearest(word, tuple(candidates))
+
+
+@lru_cache(maxsize=1024)
+def _nearest(word: str, candidates: tuple[str, ...]) -> str | None:
     folded = {_fold(c): c for c in candidates}
     plain = _fold(word)
     if plain in folded:

@@ -172,9 +172,13 @@ def bad_word(span: Span, word: str, choices: Iterable[str], report: Report) -> N
     choices = tuple(choices)
     meant = nearest(word, choices)
     report.error(
-        "VDS026", span, label=f"`{word}` is none of the words for this", help=f"it may be {listing(choices)}",
-        suggestion=meant, fix=meant,
-    )  # fmt: skip
+        "VDS026",
+        span,
+        label=f"`{word}` is none of the words for this",
+        help=f"it may be {listing(choices)}",
+        suggestion=meant,
+        fix=meant,
+    )
 
 
 def _word(value: ast.Value, env: Env, want: str, report: Report) -> str | None:
@@ -239,9 +243,12 @@ def _named(value: ast.Name, env: Env, report: Report) -> Quantity | None:
     numbers = [n for n, b in env.items() if not isinstance(b, str)]
     hint = "a minus between two values has spaces around it: `a - b`" if "-" in name else None
     report.error(
-        "VDS027", value.span, label=f"no number is called `{name}` here",
-        help=hint or (f"known here: {listing(numbers)}" if numbers else None), suggestion=nearest(name, numbers),
-    )  # fmt: skip
+        "VDS027",
+        value.span,
+        label=f"no number is called `{name}` here",
+        help=hint or (f"known here: {listing(numbers)}" if numbers else None),
+        suggestion=nearest(name, numbers),
+    )
     return None
 
 
@@ -270,7 +277,9 @@ def _sum(value: ast.Binary, left: Quantity, right: Quantity, report: Report) -> 
     if left.kind == "any" or (left.kind == "number" and left.value == 0):
         return Quantity(total, right.kind if right.kind != "number" else left.kind)
     report.error(
-        "VDS021", value.span, label=f"{_DESCRIBE[left.kind]} and {_DESCRIBE[right.kind]} cannot be added",
+        "VDS021",
+        value.span,
+        label=f"{_DESCRIBE[left.kind]} and {_DESCRIBE[right.kind]} cannot be added",
         help="give both the same unit",
-    )  # fmt: skip
+    )
     return None

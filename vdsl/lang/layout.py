@@ -20,8 +20,8 @@ DEEPEST = 40
 
 _PIECE = re.compile(r'"(?:[^"\\\n]|\\[^\n])*"?|\#[^\n]*|[(){};\n]|[^"\#(){};\n]+')
 _STORY_START = re.compile(
-    r"[ \t]*(?:[(/\n\r]|$|(?:storyboard|character|scene|use|set|prop|cast|action|cut|dissolve|fade-in|fade-out"
-    r"|wipe|fps|size|aspect|seed|rig|style|takes|proposals)\b(?!-))|[^\W\d][\w-]*[ \t]+at\b"
+    r"[ \t]*(?:[(/\n\r]|$|(?:storyboard|character|scene|use|set|prop|cast|action|cut|dissolve|fade-in"
+    r"|fade-out|wipe|fps|size|aspect|seed|rig|style|takes|proposals)\b(?!-))|[^\W\d][\w-]*[ \t]+at\b"
 )
 
 
@@ -85,7 +85,7 @@ class _Cutter:
                 self.report.error(
                     "VDS005",
                     self.span(self.start, self.start + 1),
-                    label=f"this line has {self.end - self.start:,} characters, {LONGEST_LINE:,} are the most",
+                    label=f"this line has {self.end - self.start:,} characters; {LONGEST_LINE:,} is the most",
                     help="split it into several lines",
                 )
             self.lines.append(line)

@@ -47,9 +47,11 @@ def read_options(options: tuple[ast.Option, ...], fps: tuple[int, int], report: 
             continue
         if name in seen:
             report.error(
-                "VDS051", option.span, label=f"`{name}` is said twice on this line",
+                "VDS051",
+                option.span,
+                label=f"`{name}` is said twice on this line",
                 notes=[(seen[name].span, "first here")],
-            )  # fmt: skip
+            )
             continue
         seen[name] = option
         if len(option.values) != 1:
@@ -66,15 +68,21 @@ def _unknown(option: ast.Option, report: Report) -> None:
     folded = words.fold(name)
     if folded in words.CAMERA_WORDS:
         report.error(
-            "VDS050", option.name.span, label=f"`{name}` is a word of the camera, not an option",
+            "VDS050",
+            option.name.span,
+            label=f"`{name}` is a word of the camera, not an option",
             help="camera words stand in parentheses after the slash: `/ (static close-up eye-level)`",
-        )  # fmt: skip
+        )
         return
     meant = nearest(name, _READERS)
     report.error(
-        "VDS050", option.name.span, label=f"there is no option `{name}`",
-        help=f"options are {listing(_READERS, 20)}; a time alone is the duration", suggestion=meant, fix=meant,
-    )  # fmt: skip
+        "VDS050",
+        option.name.span,
+        label=f"there is no option `{name}`",
+        help=f"options are {listing(_READERS, 20)}; a time alone is the duration",
+        suggestion=meant,
+        fix=meant,
+    )
 
 
 def _wrong_count(option: ast.Option, name: str, report: Report) -> None:
@@ -123,9 +131,11 @@ def _lens(value: ast.Value, fps: tuple[int, int], report: Report) -> tuple[float
             return None
         if not SHORTEST_LENS <= end.value <= LONGEST_LENS:
             report.error(
-                "VDS054", end.span, label=f"no lens has {end.value:g}mm",
+                "VDS054",
+                end.span,
+                label=f"no lens has {end.value:g}mm",
                 help=f"focal lengths go from {SHORTEST_LENS:g}mm to {LONGEST_LENS:g}mm",
-            )  # fmt: skip
+            )
             return None
         found.append(end.value)
     if found[0] > found[1]:
@@ -297,9 +307,13 @@ def _choose(
         return word
     meant = nearest(word, choices) if word else None
     report.error(
-        "VDS056", value.span, label=f"`{value.span.text}` is no {what}", help=f"{what} may be {listing(choices)}",
-        suggestion=meant, fix=meant,
-    )  # fmt: skip
+        "VDS056",
+        value.span,
+        label=f"`{value.span.text}` is no {what}",
+        help=f"{what} may be {listing(choices)}",
+        suggestion=meant,
+        fix=meant,
+    )
     return None
 
 
@@ -326,7 +340,8 @@ _READERS: dict[str, Callable[[ast.Value, tuple[int, int], Report], object]] = {
     "style": _style,
 }
 _EXAMPLES = {
-    "lens": "lens 50mm", "ease": "ease slow-in", "duration": "4s", "roll": "roll 12deg", "focus": "focus anna",
+    "lens": "lens 50mm", "ease": "ease slow-in", "duration": "4s", "roll": "roll 12deg",
+    "focus": "focus anna",
     "say": 'say "Hello."', "note": 'note "late light"', "proposals": "proposals 80", "takes": "takes 5",
     "speed": "speed brisk", "style": "style ink",
 }  # fmt: skip

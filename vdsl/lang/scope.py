@@ -21,7 +21,7 @@ ROOMS = ("set", "room", "area")
 
 @dataclass(frozen=True)
 class Found:
-    """A place in the set's tree: ``path`` from the root (without the set's name); ``spot`` is its last part."""
+    """A place in a set: ``path`` from the root, without the set's name; ``spot``: its last part is one."""
 
     path: tuple[str, ...]
     node: SetNode
@@ -51,9 +51,12 @@ class Scope:
         if found:
             paths = [".".join((self.root.name, *f.path)) for f in found]
             report.error(
-                "VDS061", name.span, label=f"`{name.text}` could be any of {len(found)}",
-                help=f"say which: {listing(paths)}", suggestion=self._shortest(found[0]),
-            )  # fmt: skip
+                "VDS061",
+                name.span,
+                label=f"`{name.text}` could be any of {len(found)}",
+                help=f"say which: {listing(paths)}",
+                suggestion=self._shortest(found[0]),
+            )
             return None
         self._unknown(name, report)
         return None
@@ -158,9 +161,13 @@ class Scope:
         meant = nearest(name.text, near) or nearest(name.text, every)
         things = [n for n in near if n != top.name]
         report.error(
-            "VDS060", name.span, label=f"nothing is called `{name.text}` here",
-            help=f"the scene has {listing(things)}" if things else None, suggestion=meant, fix=meant,
-        )  # fmt: skip
+            "VDS060",
+            name.span,
+            label=f"nothing is called `{name.text}` here",
+            help=f"the scene has {listing(things)}" if things else None,
+            suggestion=meant,
+            fix=meant,
+        )
 
     def _unknown_part(self, name: Name, report: Report) -> None:
         """Of a dotted name, say which part is wrong."""
@@ -174,10 +181,13 @@ class Scope:
             meant = nearest(part, inside)
             whole = ".".join(name.parts[:size])
             report.error(
-                "VDS060", name.span, label=f"`{whole}` has no `{part}`",
+                "VDS060",
+                name.span,
+                label=f"`{whole}` has no `{part}`",
                 help=f"it has {listing(dict.fromkeys(inside))}" if inside else "it has no parts or spots",
-                suggestion=f"{whole}.{meant}" if meant else None, fix=f"{whole}.{meant}" if meant else None,
-            )  # fmt: skip
+                suggestion=f"{whole}.{meant}" if meant else None,
+                fix=f"{whole}.{meant}" if meant else None,
+            )
             return
         first = name.parts[0]
         meant = nearest(first, _names(self.root))

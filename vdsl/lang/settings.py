@@ -72,9 +72,13 @@ def _word(line: ast.Header, settings: Settings, choices: tuple[str, ...], report
         return
     meant = nearest(value.text, choices) if isinstance(value, ast.Name) else None
     report.error(
-        "VDS036", value.span, label=f"`{value.span.text}` is no {name}", help=f"{name} may be {listing(choices)}",
-        suggestion=meant, fix=meant,
-    )  # fmt: skip
+        "VDS036",
+        value.span,
+        label=f"`{value.span.text}` is no {name}",
+        help=f"{name} may be {listing(choices)}",
+        suggestion=meant,
+        fix=meant,
+    )
 
 
 def _plain(line: ast.Header, count: int, example: str, report: Report) -> list[float] | None:

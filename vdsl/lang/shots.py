@@ -67,7 +67,7 @@ def _fitting(
     subject: Target | None,
     report: Report,
 ) -> CameraWords:
-    """Free words narrowed to what suits the line: a place is shown wide, and no one is followed who is not there."""
+    """Free words narrowed to what suits the line: a place is shown wide, and an absent one is not followed."""
     movements, scales = said.movements, said.scales
     if establishing and "scale" not in said.said:
         scales = ("wide", "full")
@@ -76,9 +76,11 @@ def _fitting(
             movements = tuple(m for m in movements if m != "follow")
         elif movements == ("follow",) and camera is not None:
             report.error(
-                "VDS045", camera.span, label="nobody acts on this line, so there is no one to follow",
+                "VDS045",
+                camera.span,
+                label="nobody acts on this line, so there is no one to follow",
                 help="put it below a story line, or take another movement",
-            )  # fmt: skip
+            )
     return CameraWords(movements, scales, said.angles, said.said)
 
 

@@ -1,3 +1,4 @@
+# ruff: noqa: E501 (a table of prose; its lines are sentences)
 """What is said about a line that does not read: specific where the mistake is a known one.
 
 :data:`RULES` is a table of malformed lines: each has an example, which is its test, a pattern that

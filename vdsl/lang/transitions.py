@@ -25,9 +25,11 @@ class Joins:
         seconds = self._seconds(line, fps)
         if not begun and kind != "fade-in":
             self.report.error(
-                "VDS078", line.span, label=f"there is nothing before this to {kind} from",
+                "VDS078",
+                line.span,
+                label=f"there is nothing before this to {kind} from",
                 help="a film may begin with a fade-in",
-            )  # fmt: skip
+            )
             return
         if self._next is None:
             self._next, self._last = Transition(kind, seconds), line
@@ -36,9 +38,12 @@ class Joins:
         else:
             assert self._last is not None
             self.report.error(
-                "VDS078", line.span, label="two lines join in one way", help="only a fade-out may be followed by a fade-in",
+                "VDS078",
+                line.span,
+                label="two lines join in one way",
+                help="only a fade-out may be followed by a fade-in",
                 notes=[(self._last.span, "the other transition")],
-            )  # fmt: skip
+            )
 
     def _seconds(self, line: ast.TransitionLine, fps: tuple[int, int]) -> float:
         kind = line.kind.text

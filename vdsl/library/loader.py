@@ -74,9 +74,11 @@ class Catalog:
         for statement in script.statements:
             if isinstance(statement, ast.FileDefinition):
                 self.report.error(
-                    "VDS017", statement.path.span, label="definitions from other programs' files are not read yet",
+                    "VDS017",
+                    statement.path.span,
+                    label="definitions from other programs' files are not read yet",
                     help=f"write the {statement.kind} in text, or take one of the library's",
-                )  # fmt: skip
+                )
             if not isinstance(statement, ast.Definition):
                 continue
             key = (statement.kind, statement.name.text)
@@ -85,9 +87,11 @@ class Catalog:
                 self._own[key] = statement
             elif first.span.source is statement.span.source:
                 self.report.error(
-                    "VDS018", statement.name.span, label=f"the {key[0]} `{key[1]}` is defined twice",
+                    "VDS018",
+                    statement.name.span,
+                    label=f"the {key[0]} `{key[1]}` is defined twice",
                     notes=[(first.name.span, "first here")],
-                )  # fmt: skip
+                )
 
     def _scan(self, kind: str) -> dict[str, Source]:
         """Names of a kind in the library, with the file each is in."""

@@ -16,8 +16,8 @@ from .channels import Channels
 from .contacts import Contacts, HandTracks
 from .curves import below, delayed, plateau, ramp, smooth, wander
 from .face import GazePull, Look, blinks, look, speech
-from .figure import MIRROR, ArmPose, Figure, HandGoals, palm_rotation
-from .gait import ankle_positions, sit_clearance
+from .figure import MIRROR, ArmPose, Figure, HandGoals, palm_offset, palm_rotation
+from .gait import ankle_positions, level_thigh, sit_clearance
 from .plan import Plan
 from .rotations import wrap
 
@@ -113,6 +113,7 @@ class Performer:
             0.55 * lean + c["body.lean"] + 0.5 * transition + accelerate + 0.05 * self.run
             + 0.012 * self.breath + 0.03 * self.sitting
         )  # fmt: skip
+        self.bent = smooth(np.clip(pitch + spine_lean - 0.08, 0.0, 1.2), 0.06 * self.fps)
         spine_twist = (
             1.9 * 0.13 * stride + c["body.twist"] + self.look.chest_twist + twist + 0.6 * self.twirl
             - 0.8 * c["hips.turn"]
@@ -166,11 +167,10 @@ class Performer:
         return ankle, toes
 
     def _dangle(self) -> Array:
-        """How far the feet hang above the floor on a seat too high for them [T]."""
-        bind = self.skeleton.bind
+        """How far the feet hang above the floor on a seat too high for them [T]: thighs stay level."""
         hip = self.seat_height + sit_clearance(self.skeleton)
-        leg = bind[JOINT["thigh_l"]][2] - bind[JOINT["foot_l"]][2]
-        return np.asarray(np.maximum(hip - bind[JOINT["foot_l"]][2] - 0.88 * leg, 0.0))
+        knee = self.skeleton.bind[JOINT["shin_l"]][2]
+        return np.asarray(np.maximum(hip - knee - level_thigh(self.skeleton), 0.0))
 
     def _pelvis_height(self, xy: Array, ankle: Array, drop: Array) -> Array:
         """[T]: as high as the legs allow, never with a knee snapped straight."""
@@ -203,7 +203,8 @@ class Performer:
     def _set_legs(self, ankle: Array, toes: Array, bind: Array) -> None:
         yaw = np.unwrap(self.feet.place[..., 2], axis=1)
         spread = 0.10 + 0.12 * self.sitting + self.channels["knees.spread"]
-        pitch = self.feet.pitch + self.channels.pair("foot", "pitch")
+        hanging = 0.35 * np.clip(self._dangle() / 0.1, 0, 1) * self.sitting
+        pitch = self.feet.pitch + self.channels.pair("foot", "pitch") + hanging
         hips = self.figure.hip_joints()
         leg = bind[JOINT["thigh_l"]][2] - bind[JOINT["foot_l"]][2]
         pull = ankle - hips
@@ -226,7 +227,7 @@ class Performer:
         lag = delayed(opposite.T, 0.06 * self.fps).T
         run = self.run
         sit = self.sitting
-        swing = -0.03 + self.arm_noise + opposite * (0.36 + 0.15 * run) - 0.15 * run + 0.18 * sit
+        swing = -0.03 + self.arm_noise + opposite * (0.36 + 0.15 * run) - 0.15 * run + 0.18 * sit + 0.85 * self.bent
         out = 0.17 + 0.05 * run + 0.5 * self.arm_noise[::-1] + 0.05 * sit + 0.02 * self.breath
         bend = self.rest + 0.20 * np.maximum(lag, -0.4) * (1 - run) + run * (1.45 + 0.25 * lag) + 0.75 * sit
         twist = 0.14 + 0.2 * run + 0.2 * sit + 0.0 * swing
@@ -279,9 +280,10 @@ class Performer:
 
     def _shortage(self, tracks: HandTracks) -> Array:
         """[2, T]: how far each hand's place is out of the arm's reach, by the reach's weight."""
-        d = np.linalg.norm(tracks.position(self.figure) - self.figure.shoulders(), axis=-1)
-        reach = 0.95 * (self.figure.arm_length + 0.045 * self.height)
-        return np.asarray(np.maximum(d - reach, 0.0) * tracks.weight)
+        rotation = palm_rotation(self.yaw, tracks.inward, tracks.pitch, tracks.tilt, self.skeleton)
+        wrist = tracks.position(self.figure) - np.einsum("ktab,kb->kta", rotation, palm_offset(self.skeleton))
+        d = np.linalg.norm(wrist - self.figure.shoulders(), axis=-1)
+        return np.asarray(np.maximum(d - 0.925 * self.figure.arm_length, 0.0) * tracks.weight)
 
     def arms(self, contacts: Contacts) -> Array:
         """Poses arms and hands; returns the palms [2, T, 3]."""

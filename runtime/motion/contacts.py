@@ -117,6 +117,8 @@ class HandTracks:
             )
             if layer.rim:
                 at = at - self._up(k)[..., 2] * layer.rim
+                if not isinstance(layer.place, str):  # upright it comes in above what it will be tipped over
+                    at[:, 2] += 1.25 * layer.rim * np.maximum(np.cos(self.tilt[k]), 0.0)
             over = w + total[k] * (1 - w)
             share = w / np.maximum(over, 1e-6)
             out[k] += share[:, None] * (at - out[k])

@@ -189,7 +189,9 @@ class Figure:
         wrist_fk = root + down * self._upper + lower * self._lower
         pole_fk = -forward
         heading = rot_z(yaw)
-        natural = np.stack([heading @ np.array([-0.12, m * 0.42, -1.0]) for m in (1.0, -1.0)])
+        high = np.clip((goals.position[..., 2] - root[..., 2] + 0.09 * self.skeleton.height) / 0.25, 0.0, 1.0)
+        natural = np.stack([-0.12 - 0.18 * high, MIRROR * (0.42 + 0.4 * high), np.full_like(high, -1.0)], axis=-1)
+        natural = np.einsum("tab,ktb->kta", heading, natural)
         w = goals.weight[..., None]
         pole = unit((1 - w) * pole_fk + w * natural)
         fk_relative = self._wrist_angles(pose)

@@ -80,8 +80,13 @@ def seat_distance(skeleton: Skeleton, seat_height: float) -> float:
     """How far before the middle of a seat the feet stand."""
     bind = skeleton.bind
     thigh = bind[JOINT["thigh_l"]][2] - bind[JOINT["shin_l"]][2]
-    rise = seat_height + sit_clearance(skeleton) - bind[JOINT["shin_l"]][2]
+    rise = min(seat_height + sit_clearance(skeleton) - bind[JOINT["shin_l"]][2], level_thigh(skeleton))
     return float(np.sqrt(max(thigh**2 - rise**2, (0.55 * thigh) ** 2)) * 0.93)
+
+
+def level_thigh(skeleton: Skeleton) -> float:
+    """How far the knees may be below the hip joints, sitting, before the thighs go through the seat."""
+    return 0.045 * skeleton.height
 
 
 def sit_clearance(skeleton: Skeleton) -> float:
@@ -345,7 +350,7 @@ def _foot_track(
     k = np.searchsorted(lift, t, side="right") - 1  # the step last begun
     now, upcoming = np.clip(k, 0, None), np.clip(k + 1, 0, len(steps) - 1)
     u = np.where(k >= 0, np.clip((t - lift[now]) / (land - lift)[now], 0.0, 1.0), 0.0)
-    go = ease(u)
+    go = ease((u - 0.05) / 0.89)  # up before forward, forward before down
     place = places[now] + (places[now + 1] - places[now]) * go[:, None]
     off = np.clip(moved / 1.1, 0.15, 1.0) * (0.98 + 0.25 * run)  # heel-off angle of each step
     strike = np.clip(moved / 1.2 - 0.15, 0.0, 1.0) * (0.34 - 0.2 * run)

@@ -120,7 +120,8 @@ class _Scene:
             pulls += self._watching(name, eyes)
         for window in plan.windows:
             for gaze in window.timeline.gazes:
-                start, end = window.at(gaze.start), window.at(gaze.end)
+                start = window.at(gaze.start)
+                end = window.at(gaze.end) if gaze.end < 1.0 else 1e9  # to the end: on into what follows
                 weight = fade(self.t, start, end)
                 pulls.append(self._pull(performer, gaze, window, weight, eyes))
         return pulls

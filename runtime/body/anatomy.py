@@ -127,16 +127,16 @@ def shoulders(f: Figure, grow: float = 0.0) -> list[tuple[Field, float]]:
     h, k = f.p.height, limb(f)
     top = f.joint("upperarm_l")
     nape = f.joint("neck") + np.array([-0.010 * h, 0.012 * h, 0.022 * h])
-    acromion = top + np.array([-0.004 * h, -0.016 * h, 0.010 * h])
+    acromion = top + np.array([-0.004 * h, -0.016 * h, 0.004 * h])
     r = h * 0.026 * f.mix(1.0, 0.80)
     collar = [
         f.joint("neck") + np.array([0.026 * h, 0.012 * h, -0.006 * h]),
-        top + np.array([0.014 * h, -0.02 * h, 0.012 * h]),
+        top + np.array([0.014 * h, -0.02 * h, 0.008 * h]),
     ]
     return [
         (round_cone(nape, acromion, 0.9 * r + grow, r + grow), 0.035 * h),
         (round_cone(collar[0], collar[1], 0.010 * h + grow, 0.014 * h + grow), 0.025 * h),
-        (ellipsoid(top + np.array([0.0, 0.001 * h, 0.0]), 0.0355 * h * k + grow), 0.045 * h),
+        (ellipsoid(top + np.array([0.0, -0.002 * h, -0.003 * h]), 0.0335 * h * k + grow), 0.045 * h),
     ]
 
 

@@ -19,6 +19,7 @@ from ..mesh import MATERIALS, Mesh
 from .anatomy import Figure
 from .features import head_pieces, limb_pieces
 from .field import gradient
+from .head import Head
 from .outfit import bare_legs, bottom, shoes, top
 from .pieces import PARTS, Piece, other_side
 from .skeleton import PALETTE, Skeleton
@@ -93,7 +94,7 @@ def _finish(
     figure: Figure, piece: Piece
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.int64], NDArray[np.float64]]:
     """Vertices, normals, faces and dense weights of a piece, both sides where it has two."""
-    vertices, normals, faces = piece.patch.vertices, _normals(piece), piece.patch.faces
+    vertices, normals, faces = piece.patch.vertices, _normals(figure, piece), piece.patch.faces
     weights = _weights(figure, piece)
     if piece.symmetry == "whole":
         return vertices, normals, faces, weights
@@ -115,12 +116,37 @@ def _finish(
     return vertices[used], normals[used], inverse.reshape(-1, 3), weights[used]
 
 
-def _normals(piece: Piece) -> NDArray[np.float64]:
-    if piece.solid is not None:
-        normals = gradient(piece.solid, piece.patch.vertices)
-    else:
-        normals = vertex_normals(piece.patch)
-    return normals / np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-9)
+def _normals(figure: Figure, piece: Piece) -> NDArray[np.float64]:
+    """Unit normals, smoothed so that tones have calm borders; a face's lean towards a plain oval's."""
+    if piece.solid is None:
+        return _unit(vertex_normals(piece.patch))
+    normals = _unit(gradient(piece.solid, piece.patch.vertices, 4e-3))
+    if piece.part == "eye":
+        return normals
+    seam = (np.abs(piece.patch.vertices[:, 1]) < 1e-9) & (piece.symmetry == "half")
+    for _ in range(2):
+        total = normals.copy()
+        for a, b in ((0, 1), (1, 2), (2, 0)):
+            np.add.at(total, piece.patch.faces[:, a], normals[piece.patch.faces[:, b]])
+            np.add.at(total, piece.patch.faces[:, b], normals[piece.patch.faces[:, a]])
+        total[seam, 1] = 0.0
+        normals = _unit(total)
+    if piece.rule == "face" and piece.part in ("skin", "mouth"):
+        normals = _unit(normals + _oval(figure, piece.patch.vertices))
+    return normals
+
+
+def _oval(figure: Figure, points: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Normals of a plain oval around the face, fading out towards the neck and the nose."""
+    p = Head(figure).units(points)
+    d = (p - np.array([-0.02, 0.0, 0.45])) / np.array([0.42, 0.33, 0.62]) ** 2
+    nose = 1.0 - 0.75 * np.exp(-((p[:, 1] / 0.055) ** 2) - ((p[:, 2] - 0.38) / 0.10) ** 2)
+    share = 1.3 * np.clip((p[:, 2] - 0.02) / 0.14, 0.0, 1.0) * np.clip((p[:, 0] + 0.05) / 0.12, 0.0, 1.0) * nose
+    return _unit(d) * share[:, None]
+
+
+def _unit(v: NDArray[np.float64]) -> NDArray[np.float64]:
+    return v / np.maximum(np.linalg.norm(v, axis=1, keepdims=True), 1e-9)
 
 
 def vertex_normals(patch: Patch) -> NDArray[np.float64]:

@@ -7,11 +7,11 @@ from numpy.typing import NDArray
 
 from .anatomy import ARM_FRAME, Figure, arm
 from .field import Field, Points, Values
-from .hair import hair_pieces
+from .hair import hair_cover, hair_pieces
 from .head import Head, brow_line, eye_opening, lips, mouth, with_neck
-from .pieces import Piece, hemmed, parted, shade
+from .pieces import Piece, hemmed, parted, parted_all, shade
 from .spec import Colour
-from .surface import Focus, Patch, clip, half, polygonise, simplify
+from .surface import Focus, Patch, clip, cull, half, polygonise, simplify
 
 _WHITE: Colour = (0.97, 0.96, 0.94)
 _DARK: Colour = (0.10, 0.07, 0.07)
@@ -46,27 +46,30 @@ def limb_pieces(f: Figure) -> list[Piece]:
 def _skin(head: Head) -> list[Piece]:
     f, u, o = head.figure, head.unit, head.origin
     solid = with_neck(head)
-    low, high = o + np.array([-0.55, -0.04, -0.42]) * u, o + np.array([0.60, 0.48, 1.05]) * u
+    low, high = o + np.array([-0.55, -0.04, -0.76]) * u, o + np.array([0.60, 0.48, 1.05]) * u
     patch = polygonise(solid, low, high, 0.0150 * u)
     centre = o + np.array([0.30, 0.10, 0.34]) * u
-    focus = Focus((float(centre[0]), float(centre[1]), float(centre[2])), 0.26 * u, 2.6)
-    patch = half(simplify(patch, 1850, solid, focus))
-    line = o[2] - 0.40 * u
+    focus = Focus((float(centre[0]), float(centre[1]), float(centre[2])), 0.24 * u, 3.6)
+    patch = half(simplify(patch, 2500, solid, focus))
+    cover = hair_cover(head)
+    if cover is not None:
+        patch = cull(patch, cover, 0.012 * u)
+    line = o[2] - 0.72 * u
     patch = clip(patch, lambda p: line - p[:, 2])
     opening = head.field(eye_opening(head))
     lash = head.field(_lash_outline(head))
     piece = Piece(clip(patch, opening, keep_outside=True), f.spec.skin, "skin", solid, rule="face")
-    piece = hemmed(piece, 0.010 * u)
+    piece = hemmed(piece, 0.007 * u)
     rest, rim = parted(piece, lash, _LASH, "skin")
     rest, lip = parted(rest, head.field(lips(head)), lip_colour(f), "skin")
-    lip, line_ = parted(lip, head.field(mouth(head)), (0.22, 0.07, 0.08), "mouth")
-    return [rest, rim, lip, line_]
+    line_ = parted_all(lip, [head.field(cut) for cut in mouth(head)], (0.24, 0.08, 0.08), "skin")
+    return [rest, rim, *line_]
 
 
 def _lash_outline(head: Head) -> Field:
     """A thin crescent along the upper lid."""
-    thick = 0.011 + 0.009 * head.fem
-    outer = eye_opening(head, grow=0.006, lift=thick)
+    thick = 0.010 + 0.008 * head.fem
+    outer = eye_opening(head, grow=0.004, lift=thick)
     ez = head.eye[2]
 
     def field(p: Points) -> Values:

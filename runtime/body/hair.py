@@ -20,6 +20,16 @@ def hair_pieces(head: Head) -> list[Piece]:
     return [*pieces, *_facial(head)]
 
 
+def hair_cover(head: Head) -> Field | None:
+    """A solid that hides the scalp under it in every style but the bald ones; metres."""
+    style = head.figure.spec.hair
+    if style in ("bald", "tonsure"):
+        return None
+    line = hairline(head, 0.83, 0.75, 0.26, 0.52)
+    shell = scalp(head)
+    return head.field(lambda p: np.maximum(shell(p) - 0.014, line(p) + 0.03))
+
+
 def grooves(shape: Field, depth: float, count: float, centre: tuple[float, float] = (-0.05, 0.0)) -> Field:
     """Shallow furrows running down from the crown, as combed strands."""
 
@@ -134,10 +144,11 @@ def _curtain(head: Head, bottom: float, flare: float, back: float = 0.0) -> Fiel
     return lambda p: -smooth_min(-whole(p), -under(p), 0.07)
 
 
-def _face_window(head: Head, top: float, width: float) -> Field:
-    """The opening of long hair around the face, a rounded arch through the front."""
+def _face_window(head: Head, top: float, width: float, sweep: float = 0.0) -> Field:
+    """The opening of long hair around the face, a rounded arch through the front; ``sweep`` slants it."""
 
     def field(p: Points) -> Values:
+        p = p - np.stack([np.zeros(len(p)), np.zeros(len(p)), sweep * p[:, 1] * np.clip((p[:, 2] - 0.35) / 0.3, 0.0, 1.0)], 1)
         y, z = np.abs(p[:, 1]) / width, (p[:, 2] - 0.20) / (top - 0.20)
         arch = (y**2.6 + np.clip(z, 0.0, None) ** 2.6) ** (1 / 2.6) - 1.0
         return np.maximum(arch * width, 0.085 + 0.10 * np.clip(p[:, 2] - 0.45, 0.0, 1.0) - p[:, 0])
@@ -146,8 +157,8 @@ def _face_window(head: Head, top: float, width: float) -> Field:
 
 
 def _bob(head: Head) -> list[Piece]:
-    shape = carve(_curtain(head, 0.07, 0.035), _face_window(head, 0.735, 0.262), 0.03)
-    return [_piece(head, grooves(shape, 0.0055, 9), (-0.66, -0.6, -0.02), (0.62, 0.6, 1.2), None, 620)]
+    shape = carve(_both(_curtain(head, 0.07, 0.030)), _face_window(head, 0.745, 0.262, 0.30), 0.03)
+    return [_piece(head, grooves(shape, 0.0055, 9), (-0.66, -0.6, -0.02), (0.62, 0.6, 1.2), None, 1700, symmetric=False)]
 
 
 def _long(head: Head) -> list[Piece]:

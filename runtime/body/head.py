@@ -16,6 +16,10 @@ from .anatomy import Figure, neck, shoulders, torso_loft
 from .field import Field, Points, Values, carve, ellipsoid, round_cone, smooth_min, union
 
 
+#: Styles that fall over the ears.
+EARS_COVERED = ("bob", "long")
+
+
 @dataclass(frozen=True)
 class Head:
     """Where a figure's head is and how its features are shaped."""
@@ -107,6 +111,8 @@ def face(head: Head) -> Field:
     groove = round_cone((0.41, 0.0, m), (0.33, half * 1.02, m + 0.002), 0.012, 0.008)
     nostril = ellipsoid((0.375 + 0.02 * nose, 0.026 * nose, 0.292 + 0.012 * soft), (0.026, 0.013, 0.012))
     whole = carve(carve(whole, groove, 0.02), nostril, 0.012)
+    if head.figure.spec.hair in EARS_COVERED:
+        return whole
     return union([(whole, 0.0), (ear(head), 0.03)])
 
 
@@ -115,9 +121,9 @@ def ear(head: Head) -> Field:
     size = 1.0 + 0.10 * head.figure.spec.eld
     lean = np.array([[0.94, 0.30, 0.18], [-0.33, 0.93, 0.12], [-0.13, -0.17, 0.98]])
     lean = np.linalg.qr(lean.T)[0].T * np.sign(np.diag(np.linalg.qr(lean.T)[1]))[:, None]
-    c = np.array([-0.030, 0.335, 0.445])
+    c = np.array([-0.030, 0.330, 0.465])
     shell = ellipsoid(c, (0.062 * size, 0.024, 0.102 * size), lean)
-    lobe = ellipsoid(c + np.array([0.018, -0.012, -0.078]), (0.030, 0.020, 0.034))
+    lobe = ellipsoid(c + np.array([0.014, -0.014, -0.070]), (0.028, 0.018, 0.030))
     bowl = ellipsoid(c + np.array([0.018, 0.026, 0.012]), (0.036, 0.020, 0.062), lean)
     return carve(union([(shell, 0.0), (lobe, 0.03)]), bowl, 0.012)
 
@@ -129,15 +135,15 @@ def eye_opening(head: Head, grow: float = 0.0, lift: float = 0.0) -> Field:
     """Almond of the left eye, seen from the front; ``grow`` widens it, ``lift`` raises the upper line."""
     ex, ey, ez = head.eye
     spec = head.figure.spec
-    wide = 0.084 + grow
-    up = 0.043 + 0.009 * head.soft + 0.006 * spec.youth - 0.014 * spec.eld + grow + lift
+    wide = 0.088 + grow
+    up = 0.043 + 0.009 * head.soft + 0.006 * spec.youth - 0.014 * spec.eld + grow
     down = 0.038 + 0.006 * spec.youth + grow
 
     def field(p: Points) -> Values:
         a = (np.abs(p[:, 1]) - ey) / wide
         b = p[:, 2] - ez - 0.010 * a
         arch = 1.0 - np.abs(a + 0.12) ** 2.3
-        d = np.maximum(b - up * arch, -b - down * (1.0 - np.abs(a - 0.05) ** 2.2))
+        d = np.maximum(b - (up + lift * np.clip(0.45 + 0.75 * a, 0.15, 1.0)) * arch, -b - down * (1.0 - np.abs(a - 0.05) ** 2.2))
         return np.maximum(d, ex + 0.03 - p[:, 0])
 
     return field
@@ -158,16 +164,18 @@ def lips(head: Head) -> Field:
     return field
 
 
-def mouth(head: Head) -> Field:
-    """The line between the lips: a thin lens that opens with the jaw."""
+def mouth(head: Head) -> list[Field]:
+    """The line between the lips, a thin lens that opens with the jaw: inside all of these."""
     m, half = head.mouth_z, head.mouth_half
 
-    def field(p: Points) -> Values:
-        a = np.abs(p[:, 1]) / (half * 0.98)
-        b = p[:, 2] - m - 0.010 * a**2
-        return np.maximum(np.abs(b) - 0.0055 * (1.0 - a**2.0), 0.16 - p[:, 0])
+    def edge(sign: float) -> Field:
+        def field(p: Points) -> Values:
+            a = np.abs(p[:, 1]) / (half * 0.94)
+            return sign * (p[:, 2] - m - 0.009 * a**2) - 0.0058 * (1.0 - a**2.4)
 
-    return field
+        return field
+
+    return [edge(1.0), edge(-1.0), lambda p: 0.16 - p[:, 0]]
 
 
 def jaw_share(head: Head, p: Points) -> Values:

@@ -53,20 +53,23 @@ def both(a: Field, b: Field) -> Field:
     return lambda p: np.maximum(a(p), b(p))
 
 
-def neckline(f: Figure, level: float, slope: float, scoop: float = 0.0, wide: float = 1.0) -> Field:
-    """Cut keeping what is below a collar line that falls towards the front; ``scoop`` deepens it there.
+def neckline(f: Figure, depth: float, air: float = 0.0, lift: float = 0.0, sharp: float = 2.0) -> Field:
+    """Cut keeping what is outside a collar line around the neck.
 
-    wide: radius of the opening around the neck, against the neck's own with some air
+    depth: how far the opening reaches down in front, metres; air: distance from the neck; lift: raises
+    the line all round; sharp: 2 for a round front, 1 for a V
     """
-    h, z = f.p.height, f.level(level)
-    x = f.joint("neck")[0]
-    radius = h * f.mix(0.047, 0.041) * (1.0 + 0.35 * f.heavy) * wide
+    h = f.p.height
+    x, z = f.joint("neck")[0], f.level(1.085) + lift
+    radius = h * f.mix(0.0395, 0.0325) * (1.0 + 0.35 * f.heavy) + air
 
     def field(p: Points) -> Values:
-        dx = p[:, 0] - x
-        round_ = scoop * np.clip(dx / (0.05 * h), 0.0, 1.4) * np.exp(-((p[:, 1] / (0.042 * h)) ** 2))
-        line = p[:, 2] - (z - slope * dx - round_)
-        return np.minimum(line, radius - np.hypot(np.clip(dx, -1.0, 0.0), p[:, 1]))
+        front = np.clip((p[:, 0] - x + 0.012 * h) / (0.040 * h), 0.0, 1.0)
+        reach = 0.010 * h + (depth - 0.010 * h) * front * front * (3 - 2 * front)
+        open_up = radius + 0.9 * np.clip(p[:, 2] - z, 0.0, 0.03 * h)
+        across = np.hypot(p[:, 1], np.clip(x - p[:, 0], 0.0, 1.0) * 0.7) / open_up
+        down = np.clip(z + 0.012 * h * (1 - front) - p[:, 2], 0.0, None) / reach
+        return (1.0 - (across**sharp + down**sharp) ** (1.0 / sharp)) * radius
 
     return field
 
@@ -112,7 +115,7 @@ def _tshirt(f: Figure) -> list[Piece]:
     patch = _surface(f, solid, hem - 0.04 * h, f.level(1.35), True, 900)
     patch = clip(
         patch,
-        both(both(above(hem), along_arm(f, end)), neckline(f, 1.10, 0.50, 0.012 * h + 0.012 * h * f.fem)),
+        both(both(above(hem), along_arm(f, end)), neckline(f, h * f.mix(0.030, 0.050), h * f.mix(0.004, 0.012))),
     )
     return [hemmed(Piece(patch, f.spec.top_color, "top", solid, material="cloth"), 0.010 * h)]
 
@@ -122,7 +125,7 @@ def _long_sleeved(
 ) -> Piece:
     h = f.p.height
     end = (f.p.upper_arm + f.p.forearm) * wrist
-    solid = top_solid(f, grow, ease, sleeve(f, grow * 1.05, end))
+    solid = top_solid(f, grow, ease, sleeve(f, grow * 0.85, end))
     patch = _surface(f, solid, hem - 0.04 * h, f.level(1.35), True, faces)
     patch = clip(patch, both(both(above(hem), along_arm(f, end)), collar))
     return Piece(patch, f.spec.top_color, "top", solid, material="cloth")
@@ -145,7 +148,7 @@ def _bands(
 def _shirt(f: Figure) -> list[Piece]:
     h = f.p.height
     hem = f.level(-0.05)
-    piece = _long_sleeved(f, 0.0085 * h, 0.14, hem, neckline(f, 1.13, 0.55, 0.02 * h), 0.97)
+    piece = _long_sleeved(f, 0.0078 * h, 0.14, hem, neckline(f, 0.040 * h, -0.004 * h, 0.012 * h), 0.97)
     pieces = _bands(f, piece, 0.0, 0.97, 0.030, 0.90, "trim")
     placket = parted(
         pieces[0],
@@ -159,7 +162,7 @@ def _shirt(f: Figure) -> list[Piece]:
 def _collar(f: Figure, colour: Colour) -> list[Piece]:
     """A turned-down shirt collar: a sloping band around the neck with points in front."""
     h = f.p.height
-    z, x = f.level(1.10), f.joint("neck")[0] + 0.004 * h
+    z, x = f.level(1.135), f.joint("neck")[0] + 0.002 * h
     r = h * f.mix(0.040, 0.0335) * (1.0 + 0.35 * f.heavy)
     solid = loft(
         (x, 0.0, z),
@@ -174,7 +177,7 @@ def _collar(f: Figure, colour: Colour) -> list[Piece]:
 
     def cut(p: Points) -> Values:
         dx, y, dz = p[:, 0] - x, np.abs(p[:, 1]), p[:, 2] - z
-        up = dz - (0.020 * h - 0.42 * dx)
+        up = dz - (0.022 * h - 0.42 * dx)
         front = np.clip(dx / (0.04 * h), 0.0, 1.5)
         down = (
             -0.012 * h - 0.40 * dx - 0.022 * h * front * np.exp(-(((y - 0.026 * h) / (0.016 * h)) ** 2))
@@ -185,16 +188,16 @@ def _collar(f: Figure, colour: Colour) -> list[Piece]:
     patch = polygonise(
         solid, (x - 0.1 * h, -0.03, z - 0.06 * h), (x + 0.12 * h, 0.1 * h, z + 0.05 * h), 0.0045
     )
-    patch = clip(half(simplify(patch, 350, solid)), cut)
+    patch = clip(half(simplify(patch, 520, solid)), cut)
     return [hemmed(Piece(patch, shade(colour, 1.10), "trim", solid, material="cloth"), 0.010 * h)]
 
 
 def _sweater(f: Figure) -> list[Piece]:
     h = f.p.height
     hem = f.level(-0.06)
-    piece = _long_sleeved(f, 0.0120 * h, 0.16, hem, neckline(f, 1.17, 0.50), 0.97)
+    piece = _long_sleeved(f, 0.0120 * h, 0.16, hem, neckline(f, 0.024 * h, 0.001 * h, 0.008 * h), 0.97)
     pieces = _bands(f, piece, hem, 0.97, 0.028, 0.84, "trim")
-    line = neckline(f, 1.085, 0.55)
+    line = neckline(f, 0.036 * h, 0.013 * h, -0.004 * h)
     ring = parted(pieces[0], lambda p: -line(p), shade(piece.colour, 0.84), "trim")
     return [hemmed(q, 0.013 * h) for q in [*ring, *pieces[1:]]]
 
@@ -204,12 +207,12 @@ def _blazer(f: Figure, hem_level: float = -0.22, skirt: float = 0.0) -> list[Pie
     hem = f.level(hem_level) if skirt <= 0 else f.p.knee + 0.02 * h
     grow, ease = 0.0150 * h, 0.16
     end = (f.p.upper_arm + f.p.forearm) * 0.96
-    solid = top_solid(f, grow, ease, sleeve(f, 0.0115 * h, end))
+    solid = top_solid(f, grow, ease, sleeve(f, 0.0098 * h, end))
     if skirt > 0:
         body, tail = solid, _tail(f, hem)
         solid = lambda p: smooth_min(body(p), tail(p), 0.05 * h)  # noqa: E731
     patch = _surface(f, solid, hem - 0.04 * h, f.level(1.35), True, 1250)
-    patch = clip(patch, both(both(above(hem, 0.05), along_arm(f, end)), neckline(f, 1.13, 0.35)))
+    patch = clip(patch, both(both(above(hem, 0.05), along_arm(f, end)), neckline(f, 0.030 * h, 0.004 * h)))
     button = f.level(0.36)
     opening, lapel = _front(f, button, 0.0), _front(f, button, 0.042 * h)
     cloth = Piece(clip(patch, opening, keep_outside=True), f.spec.top_color, "top", solid, material="cloth")
@@ -219,16 +222,21 @@ def _blazer(f: Figure, hem_level: float = -0.22, skirt: float = 0.0) -> list[Pie
         shade(f.spec.top_color, 1.12),
         "trim",
     )
-    under = replace(f.spec, top="shirt", top_color=f.spec.shirt_color)
-    shirt = _long_sleeved(
-        Figure(under), 0.0062 * h, 0.12, f.level(-0.05), neckline(f, 1.13, 0.55, 0.02 * h), 0.985
-    )
-    shown = [hemmed(replace(shirt, part="shirt"), 0.009 * h)]
-    return (
-        [hemmed(q, 0.011 * h) for q in pieces]
-        + shown
-        + [replace(q, part="shirt") for q in _collar(f, f.spec.shirt_color)]
-    )
+    shown = [hemmed(_shirt_front(f), 0.009 * h)]
+    collar = [replace(q, part="shirt") for q in _collar(f, f.spec.shirt_color)]
+    return [hemmed(q, 0.011 * h) for q in pieces] + shown + collar
+
+
+def _shirt_front(f: Figure) -> Piece:
+    """What an open jacket shows of the shirt under it."""
+    h = f.p.height
+    low, high = f.level(-0.05), f.level(1.35)
+    solid = trunk(f, 0.0066 * h, 0.10)
+    patch = polygonise(solid, (-0.1 * h, -0.03, low), (0.2 * h, 0.10 * h, high), 0.0075 * h / 1.7)
+    patch = half(simplify(patch, 420, solid))
+    cut = neckline(f, 0.040 * h, -0.004 * h, 0.012 * h)
+    patch = clip(patch, lambda p: np.maximum(np.maximum(cut(p), p[:, 1] - 0.085 * h), -0.035 * h - p[:, 0]))
+    return Piece(patch, f.spec.shirt_color, "shirt", solid, material="cloth")
 
 
 def _front(f: Figure, button: float, margin: float) -> Field:
@@ -283,7 +291,7 @@ def _dress(f: Figure) -> list[Piece]:
     body, tail = top_solid(f, 0.0060 * h, 0.0, sleeve(f, 0.007 * h, end, 0.007 * h)), _tail(f, hem, 0.30)
     solid = lambda p: smooth_min(body(p), tail(p), 0.02 * h)  # noqa: E731
     patch = _surface(f, solid, hem - 0.04 * h, f.level(1.35), True, 1200)
-    patch = clip(patch, both(both(above(hem), along_arm(f, end)), neckline(f, 1.08, 0.55, 0.028 * h)))
+    patch = clip(patch, both(both(above(hem), along_arm(f, end)), neckline(f, 0.052 * h, 0.014 * h)))
     piece = Piece(patch, f.spec.top_color, "top", solid, rule="skirt", material="cloth")
     waist = f.level(0.38)
     belt = parted(piece, lambda p: np.abs(p[:, 2] - waist) - 0.011 * h, shade(f.spec.top_color, 0.72), "belt")

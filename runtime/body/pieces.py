@@ -52,6 +52,18 @@ def parted(piece: Piece, cut: Field, colour: Colour, part: str) -> list[Piece]:
     return [replace(piece, patch=outside), replace(piece, patch=inside, colour=colour, part=part)]
 
 
+def parted_all(piece: Piece, cuts: list[Field], colour: Colour, part: str) -> list[Piece]:
+    """As :func:`parted` for what lies inside every one of ``cuts``: the way to cut out shapes thinner than
+    the triangles, one smooth line after the other."""
+    out = []
+    rest = piece
+    for cut in cuts:
+        inside, outside = split(rest.patch, cut)
+        out.append(replace(piece, patch=outside))
+        rest = replace(rest, patch=inside)
+    return [*out, replace(rest, colour=colour, part=part)]
+
+
 def hemmed(piece: Piece, depth: float) -> Piece:
     """The piece with the thickness of its cloth shown at its borders (except on Y = 0)."""
     assert piece.solid is not None

@@ -51,13 +51,13 @@ def proportions(spec: BodySpec) -> Proportions:
     head = h / _mix(_mix(7.25, 7.1, f), 5.75, c) * (1.0 + 0.02 * e)
     chin = h - head
     build = spec.build
-    shoulder_half = h * _mix(_mix(0.112, 0.098, f) + 0.007 * (build - 0.42), 0.098, c)
+    shoulder_half = h * _mix(_mix(0.1005, 0.087, f) + 0.010 * (build - 0.42), 0.088, c)
     return Proportions(
         height=h,
         head=head,
         chin=chin,
         neck=chin - h * _mix(0.037, 0.028, c),
-        shoulder=(shoulder_half, chin - h * _mix(0.058, 0.050, c)),
+        shoulder=(shoulder_half, chin - h * _mix(0.061, 0.052, c)),
         hip=(h * _mix(_mix(0.051, 0.053, f) + 0.004 * (build - 0.42), 0.053, c), h * _mix(0.530, 0.478, c)),
         pelvis=h * _mix(0.562, 0.507, c),
         knee=h * _mix(0.288, 0.263, c),

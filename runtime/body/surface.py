@@ -68,12 +68,11 @@ class Focus:
     factor: float = 2.5
 
     def _radii(self) -> tuple[Values, Values]:
-        r = np.linspace(0.0, 6.0 * self.radius, 400)
-        return r, r * (1.0 + (self.factor - 1.0) * np.exp(-((r / self.radius) ** 2) / 1.4))
+        r = self.radius * np.linspace(0.0, 7.0, 500) ** 2
+        return r, r * (1.0 + (self.factor - 1.0) / (1.0 + (r / self.radius) ** 2))
 
     def warp(self, points: Points, inverse: bool = False) -> Points:
         plain, wide = self._radii()
-        wide = np.maximum.accumulate(wide + plain * 1e-6)
         d = points - np.array(self.centre)
         r = np.linalg.norm(d, axis=1) + 1e-12
         to = np.interp(r, wide, plain, right=np.inf) if inverse else np.interp(r, plain, wide, right=np.inf)

@@ -141,7 +141,7 @@ def _arm(f: Figure, p: Points) -> tuple[dict[str, Values], Values]:
     h, a, b, k = f.p.height, f.p.upper_arm, f.p.forearm, f.p.hand
     d = p - f.joint("upperarm_l")
     u, v, w = (d @ ARM_FRAME.T).T
-    near = 1.0 - ramp(np.hypot(v, w), 0.068 * h, 0.098 * h) * (u < a)
+    near = 1.0 - ramp(np.hypot(v, w), 0.064 * h, 0.094 * h)
     s = 0.978 * d[:, 1] - 0.208 * d[:, 2]
     m1, m2 = ramp(s, -0.022 * h, 0.026 * h) * near, ramp(s, 0.010 * h, 0.066 * h) * near
     e1, e2 = ramp(u, a - 0.036 * h, a + 0.003 * h), ramp(u, a - 0.003 * h, a + 0.036 * h)

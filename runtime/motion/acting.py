@@ -19,7 +19,7 @@ from .face import GazePull, Look, blinks, look, speech
 from .figure import MIRROR, ArmPose, Figure, HandGoals, palm_offset, palm_rotation
 from .gait import ankle_positions, level_thigh, sit_clearance
 from .plan import Plan
-from .rotations import wrap
+from .rotations import norm, turned, wrap
 
 Array = NDArray[np.float64]
 
@@ -227,7 +227,14 @@ class Performer:
         lag = delayed(opposite.T, 0.06 * self.fps).T
         run = self.run
         sit = self.sitting
-        swing = -0.03 + self.arm_noise + opposite * (0.36 + 0.15 * run) - 0.15 * run + 0.18 * sit + 0.85 * self.bent
+        swing = (
+            -0.03
+            + self.arm_noise
+            + opposite * (0.36 + 0.15 * run)
+            - 0.15 * run
+            + 0.18 * sit
+            + 0.85 * self.bent
+        )
         out = 0.17 + 0.05 * run + 0.5 * self.arm_noise[::-1] + 0.05 * sit + 0.02 * self.breath
         bend = self.rest + 0.20 * np.maximum(lag, -0.4) * (1 - run) + run * (1.45 + 0.25 * lag) + 0.75 * sit
         twist = 0.14 + 0.2 * run + 0.2 * sit + 0.0 * swing
@@ -265,7 +272,7 @@ class Performer:
             d = tracks.position(self.figure) - shoulders
             heading = np.stack([np.cos(self.yaw), np.sin(self.yaw)], axis=1)
             flat = np.einsum("ktc,tc->kt", d[..., :2], heading)
-            length = np.maximum(np.linalg.norm(d, axis=-1), 1e-6)
+            length = np.maximum(norm(d), 1e-6)
             ahead = (gap * np.clip(flat / length, 0.0, 1.0)).max(axis=0)
             down = (gap * np.clip(-d[..., 2] / length, 0.0, 1.0)).max(axis=0)
             more = smooth(np.stack([ahead, down], axis=1), 0.10 * self.fps)
@@ -281,8 +288,8 @@ class Performer:
     def _shortage(self, tracks: HandTracks) -> Array:
         """[2, T]: how far each hand's place is out of the arm's reach, by the reach's weight."""
         rotation = palm_rotation(self.yaw, tracks.inward, tracks.pitch, tracks.tilt, self.skeleton)
-        wrist = tracks.position(self.figure) - np.einsum("ktab,kb->kta", rotation, palm_offset(self.skeleton))
-        d = np.linalg.norm(wrist - self.figure.shoulders(), axis=-1)
+        wrist = tracks.position(self.figure) - turned(rotation, palm_offset(self.skeleton)[:, None])
+        d = norm(wrist - self.figure.shoulders())
         return np.asarray(np.maximum(d - 0.925 * self.figure.arm_length, 0.0) * tracks.weight)
 
     def arms(self, contacts: Contacts) -> Array:

@@ -15,7 +15,21 @@ from numpy.typing import NDArray
 from runtime.body.skeleton import JOINT, JOINTS, PARENTS, Skeleton
 
 from .ik import bone_rotation, two_bone
-from .rotations import across, blend, quaternion, rot_x, rot_y, rot_z, rotation, rotation_vector, unit
+from .rotations import (
+    across,
+    blend,
+    cross,
+    dot,
+    norm,
+    quaternion,
+    rot_x,
+    rot_y,
+    rot_z,
+    rotation,
+    rotation_vector,
+    turned,
+    unit,
+)
 
 Array = NDArray[np.float64]
 SIDES = ("l", "r")
@@ -61,7 +75,7 @@ def _hand_axes(skeleton: Skeleton, side: str) -> tuple[Array, Array, Array]:
     """In the bind pose: along the fingers, out of the palm, to the thumb."""
     fingers = unit(skeleton.bind[JOINT[f"fingers_{side}"]] - skeleton.bind[JOINT[f"hand_{side}"]])
     thumb = across(np.array([1.0, 0.0, 0.0]), fingers)
-    palm = np.cross(thumb, fingers) if side == "r" else np.cross(fingers, thumb)
+    palm = cross(thumb, fingers) if side == "r" else cross(fingers, thumb)
     return fingers, palm, thumb
 
 
@@ -184,26 +198,28 @@ class Figure:
         root = self.shoulders()
         chest = self.rotation[:, JOINT["chest"]]
         down, forward = _arm_directions(pose)
-        down, forward = (np.einsum("tab,ktb->kta", chest, v) for v in (down, forward))
+        down, forward = (turned(chest[None], v) for v in (down, forward))
         lower = np.cos(pose.bend)[..., None] * down + np.sin(pose.bend)[..., None] * forward
         wrist_fk = root + down * self._upper + lower * self._lower
         pole_fk = -forward
         heading = rot_z(yaw)
         high = np.clip((goals.position[..., 2] - root[..., 2] + 0.09 * self.skeleton.height) / 0.25, 0.0, 1.0)
-        natural = np.stack([-0.12 - 0.18 * high, MIRROR * (0.42 + 0.4 * high), np.full_like(high, -1.0)], axis=-1)
-        natural = np.einsum("tab,ktb->kta", heading, natural)
+        natural = np.stack(
+            [-0.12 - 0.18 * high, MIRROR * (0.42 + 0.4 * high), np.full_like(high, -1.0)], axis=-1
+        )
+        natural = turned(heading[None], natural)
         w = goals.weight[..., None]
         pole = unit((1 - w) * pole_fk + w * natural)
         fk_relative = self._wrist_angles(pose)
         offset = palm_offset(self.skeleton)
-        goal_wrist = goals.position - np.einsum("ktab,kb->kta", goals.rotation, offset)
-        for _ in range(3):
+        goal_wrist = goals.position - turned(goals.rotation, offset[:, None])
+        for _ in range(3 if goals.weight.any() else 1):
             target = wrist_fk + w * (goal_wrist - wrist_fk)
             limb = two_bone(root, target, self._upper, self._lower, pole)
             upper, fore, hand = self._arm_rotations(
                 root, limb.middle, limb.end, limb.hinge, fk_relative, goals
             )
-            goal_wrist = goals.position - np.einsum("ktab,kb->kta", hand, offset)
+            goal_wrist = goals.position - turned(hand, offset[:, None])
         for k, s in enumerate(SIDES):
             a, f, h = (JOINT[f"{name}_{s}"] for name in ("upperarm", "forearm", "hand"))
             self.position[:, a], self.position[:, f], self.position[:, h] = (
@@ -212,7 +228,7 @@ class Figure:
                 limb.end[k],
             )
             self.rotation[:, a], self.rotation[:, f], self.rotation[:, h] = upper[k], fore[k], hand[k]
-        palm: Array = limb.end + np.einsum("ktab,kb->kta", hand, offset)
+        palm: Array = limb.end + turned(hand, offset[:, None])
         return palm
 
     def _wrist_angles(self, pose: ArmPose) -> Array:
@@ -222,8 +238,8 @@ class Figure:
             fingers, palm, thumb = _hand_axes(self.skeleton, s)
             m = 1.0 if s == "l" else -1.0
             turn = rotation(fingers * (m * pose.turn[k])[:, None])
-            side = rotation(np.cross(fingers, thumb) * pose.side[k][:, None])
-            bend = rotation(np.cross(fingers, palm) * pose.wrist[k][:, None])
+            side = rotation(cross(fingers, thumb) * pose.side[k][:, None])
+            bend = rotation(cross(fingers, palm) * pose.wrist[k][:, None])
             out.append(turn @ side @ bend)
         return np.stack(out)
 
@@ -240,9 +256,11 @@ class Figure:
             fore.append(bone_rotation(wrist[k] - elbow[k], hinge[k], bind[h] - bind[f], front))
             axes.append(unit(bind[h] - bind[f]))
         base, axis = np.stack(fore), np.stack(axes)[:, None]
-        goal = np.swapaxes(base, -1, -2) @ goals.rotation
-        relative = _within_limits(blend(fk, goal, goals.turning), axis)
-        swivel = np.sum(rotation_vector_twist(relative, axis) * axis, axis=-1)
+        relative = fk
+        if goals.turning.any():
+            goal = np.swapaxes(base, -1, -2) @ goals.rotation
+            relative = _within_limits(blend(fk, goal, goals.turning), axis)
+        swivel = dot(rotation_vector_twist(relative, axis), axis)
         return np.stack(upper), base @ rotation(axis * (0.45 * swivel)[..., None]), base @ relative
 
     def fingers(self, curl: Array, point: Array, thumb: Array) -> None:
@@ -302,7 +320,7 @@ def _arm_directions(pose: ArmPose) -> tuple[Array, Array]:
     down = np.stack([s * cf, s * co, -c], axis=-1)
     forward = np.stack([cf * c * cf + co * co, cf * c * co - co * cf, cf * s], axis=-1)
     twist = pose.twist[..., None]
-    forward = np.cos(twist) * forward + np.sin(twist) * np.cross(down, forward)
+    forward = np.cos(twist) * forward + np.sin(twist) * cross(down, forward)
     flip = np.ones((2, 1, 3))
     flip[1, 0, 1] = -1.0
     return down * flip, forward * flip
@@ -311,7 +329,7 @@ def _arm_directions(pose: ArmPose) -> tuple[Array, Array]:
 def rotation_vector_twist(matrix: Array, axis: Array) -> Array:
     """The part of each rotation about the unit ``axis``, as a rotation vector."""
     q = quaternion(matrix)
-    along = np.sum(q[..., 1:] * axis, axis=-1)
+    along = dot(q[..., 1:], axis)
     out: Array = axis * (2.0 * np.arctan2(along, q[..., 0]))[..., None]
     return out
 
@@ -325,7 +343,7 @@ def _within_limits(relative: Array, axis: Array) -> Array:
 
 
 def _soft_limit(vector: Array, limit: float) -> Array:
-    length = np.linalg.norm(vector, axis=-1, keepdims=True)
+    length = norm(vector)[..., None]
     knee = 0.75 * limit
     over = np.maximum(length - knee, 0.0)
     room = limit - knee

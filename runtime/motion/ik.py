@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from .rotations import across, unit
+from .rotations import across, cross, norm, unit
 
 Array = NDArray[np.float64]
 
@@ -43,7 +43,7 @@ def two_bone(
     A target too far is approached in its direction. The middle joint never passes straight.
     """
     offset = target - root
-    wished = np.linalg.norm(offset, axis=-1)
+    wished = norm(offset)
     axis = offset / np.maximum(wished, 1e-9)[..., None]
     full = np.asarray(upper + lower)
     reach = soft_length(wished, full) if soft else np.minimum(wished, full * 0.9999)
@@ -52,7 +52,7 @@ def two_bone(
     sine = np.sqrt(1.0 - cosine**2)
     side = across(pole, axis)
     middle = root + axis * (upper * cosine)[..., None] + side * (upper * sine)[..., None]
-    return Limb(middle, root + axis * reach[..., None], np.cross(side, axis))
+    return Limb(middle, root + axis * reach[..., None], cross(side, axis))
 
 
 def bone_rotation(direction: Array, hinge: Array, bind: Array, bind_side: Array) -> Array:
@@ -61,9 +61,9 @@ def bone_rotation(direction: Array, hinge: Array, bind: Array, bind_side: Array)
     bind [3], bind_side [3]: in the bind pose the bone's direction, and where it swings to on flexing
     """
     d = unit(direction)
-    e = unit(np.cross(hinge, d))
-    world = np.stack([d, e, np.cross(d, e)], axis=-1)
+    e = unit(cross(hinge, d))
+    world = np.empty((*d.shape, 3))
+    world[..., 0], world[..., 1], world[..., 2] = d, e, cross(d, e)
     b = unit(bind)
     s = across(bind_side, b)
-    local = np.stack([b, s, np.cross(b, s)], axis=-1)
-    return world @ np.swapaxes(local, -1, -2)
+    return world @ np.stack([b, s, cross(b, s)])

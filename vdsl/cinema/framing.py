@@ -16,8 +16,9 @@ def direction(theta: Array, phi: Array) -> Array:
 def basis(theta: Array, phi: Array) -> tuple[Array, Array, Array]:
     """Right, up and backward (towards the camera) [..., 3] of a level camera looking along −direction."""
     back = direction(theta, phi)
-    right = np.stack([-np.sin(phi), np.cos(phi), np.zeros_like(phi)], axis=-1)
-    return right, np.cross(back, right), back
+    s, c, cot = np.sin(phi), np.cos(phi), np.cos(theta)
+    right = np.stack([-s, c, np.zeros_like(phi)], axis=-1)
+    return right, np.stack([-cot * c, -cot * s, np.sin(theta)], axis=-1), back
 
 
 def solve(

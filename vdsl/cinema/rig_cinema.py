@@ -71,7 +71,7 @@ def frame(
     low = (aim + r[:, None] * direction(theta, phi))[:, 2] < FLOOR_CLEARANCE
     if low.any():
         under, over = theta.copy(), np.full_like(theta, np.pi / 2)
-        for _ in range(24):  # halving, to well below a micron of height
+        for _ in range(12):  # halving, to about a millimetre of height
             turned = np.where(low, (under + over) / 2, theta)
             r, aim = solved(turned)
             sunk = (aim + r[:, None] * direction(turned, phi))[:, 2] < FLOOR_CLEARANCE

@@ -111,35 +111,40 @@ def _near(solids: Solids, boxes: NDArray[np.int64], camera: Array, points: Array
     middle = points.mean(axis=-2)
     spread = np.linalg.norm(points - middle[..., None, :], axis=-1).max(axis=-1)
     ray = (middle - camera).astype(np.float32)
-    square = np.maximum((ray**2).sum(-1), 1e-9)
-    start = (solids.centre[boxes] - camera[:, :, None]).astype(np.float32)
-    t = np.clip(np.einsum("pfbk,pfk->pfb", start, ray) / square[..., None], 0.0, 1.0)
-    away = np.linalg.norm(start - t[..., None] * ray[:, :, None], axis=-1)
-    radius = np.linalg.norm(solids.half[boxes], axis=1)
-    return np.asarray(away < radius + spread[..., None])
+    square = np.maximum(np.einsum("pfk,pfk->pf", ray, ray), 1e-9)
+    centre = solids.centre[boxes].astype(np.float32)
+    eye = camera.astype(np.float32)
+    along = np.matmul(ray, centre.T) - np.einsum("pfk,pfk->pf", ray, eye)[..., None]
+    t = np.clip(along / square[..., None], 0.0, 1.0)
+    away = np.zeros(t.shape, np.float32)
+    for k in range(3):
+        away += (centre[:, k] - eye[..., k, None] - t * ray[..., k, None]) ** 2
+    reach = np.linalg.norm(solids.half[boxes], axis=1).astype(np.float32) + spread[..., None].astype(
+        np.float32
+    )
+    return np.asarray(away < reach**2)
 
 
 def _cut(solids: Solids, box: NDArray[np.int64], camera: Array, points: Array) -> Bools:
     """Whether box m cuts the lines from camera m to its points: [M, 3], [M, K, 3] -> [M, K]."""
-    c, s = np.cos(solids.yaw[box]), np.sin(solids.yaw[box])
-
-    def turned(v: Array, extra: int) -> Array:
-        cc, ss = (c[:, None], s[:, None]) if extra else (c, s)
-        return np.stack(
-            [cc * v[..., 0] + ss * v[..., 1], cc * v[..., 1] - ss * v[..., 0], v[..., 2]], axis=-1
-        )
-
-    origin = turned(camera - solids.centre[box], 0)[:, None]
-    end = turned(points - solids.centre[box][:, None], 1)
-    half = solids.half[box][:, None]
-    ray = end - origin
-    safe = np.where(np.abs(ray) < 1e-9, 1e-9, ray)
-    t1, t2 = (-half - origin) / safe, (half - origin) / safe
-    enter = np.minimum(t1, t2).max(axis=-1)
-    leave = np.maximum(t1, t2).min(axis=-1)
-    stop = 1.0 - _TOUCH / np.maximum(np.linalg.norm(ray, axis=-1), 2 * _TOUCH)
-    within = (np.abs(end) <= half + 0.05).all(axis=-1)
-    return np.asarray((enter < np.minimum(leave, stop)) & (leave > 0.0) & ~within)
+    c, s = np.cos(solids.yaw[box])[:, None], np.sin(solids.yaw[box])[:, None]
+    start, stop = camera - solids.centre[box], points - solids.centre[box][:, None]
+    origin = (c[:, 0] * start[:, 0] + s[:, 0] * start[:, 1], c[:, 0] * start[:, 1] - s[:, 0] * start[:, 0])
+    end = (c * stop[..., 0] + s * stop[..., 1], c * stop[..., 1] - s * stop[..., 0], stop[..., 2])
+    half = solids.half[box]
+    enter, leave = np.full(end[0].shape, -np.inf), np.full(end[0].shape, np.inf)
+    square, within = np.zeros(end[0].shape), np.ones(end[0].shape, bool)
+    for axis, o in enumerate((*origin, start[:, 2])):  # slab by slab: a reduction over three is slow
+        o, h = o[:, None], half[:, axis, None]
+        ray = end[axis] - o
+        inverse = 1.0 / np.where(np.abs(ray) < 1e-9, 1e-9, ray)
+        t1, t2 = (-h - o) * inverse, (h - o) * inverse
+        np.maximum(enter, np.minimum(t1, t2), out=enter)
+        np.minimum(leave, np.maximum(t1, t2), out=leave)
+        square += ray * ray
+        within &= np.abs(end[axis]) <= h + 0.05
+    last = 1.0 - _TOUCH / np.maximum(np.sqrt(square), 2 * _TOUCH)
+    return np.asarray((enter < np.minimum(leave, last)) & (leave > 0.0) & ~within)
 
 
 def clear_of_people(camera: Array, points: Array, bodies: list[tuple[Array, Array, float]]) -> Bools:

@@ -30,7 +30,7 @@ _Term: TypeAlias = "ast.Star | tuple[tuple[str, Span], ...]"
 
 
 def read_camera(node: ast.CameraNode | None, report: Report) -> CameraWords:
-    """The words of a camera line, in any order, as words say what they are; ``*`` takes the next free slot."""
+    """The words of a camera line, in any order, as each says what it is; ``*`` takes the next free slot."""
     if node is None or not node.words:
         return FREE
     found: dict[str, tuple[str, ...]] = {}

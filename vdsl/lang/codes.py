@@ -74,8 +74,8 @@ CODES: dict[str, Code] = {
     "VDS009": Code(
         "said twice in one placement",
         "A placement says once where, once in which direction and once in which posture.",
-        "ben at counter at chair_1",
-        "ben at counter",
+        "carl at counter at chair_1",
+        "carl at counter",
     ),
     "VDS010": Code(
         "`|` without a word on both sides",
@@ -404,8 +404,8 @@ CODES: dict[str, Code] = {
     "VDS069": Code(
         "nothing to sit on",
         "One sits on what has a seat: a chair, a sofa, a bench, or a spot called seat.",
-        "ben at counter sitting",
-        "ben at chair_1 sitting",
+        "carl at counter sitting",
+        "carl at chair_1 sitting",
     ),
     # -- what happens ------------------------------------------------------------------------
     "VDS070": Code(

@@ -67,7 +67,7 @@ def _fitting(
     subject: Target | None,
     report: Report,
 ) -> CameraWords:
-    """Free words narrowed to what suits the line: a place is shown wide, and an absent one is not followed."""
+    """Free words narrowed to what suits the line: a place is shown wide, someone absent is not followed."""
     movements, scales = said.movements, said.scales
     if establishing and "scale" not in said.said:
         scales = ("wide", "full")

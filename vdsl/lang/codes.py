@@ -547,6 +547,40 @@ CODES: dict[str, Code] = {
         "place chair = chair, at (1, 1)m { place cup = cup, on top }",
         "place table = table, at (1, 1)m { place cup = cup, on top }",
     ),
+    # -- actions -------------------------------------------------------------------------
+    "VDS140": Code(
+        "an action has no parameters",
+        "Props and cast members are made to measure; an action is done in ways. Each way is a `variant`, with its "
+        "own amplitude, tempo or poses, and the ranking chooses between them.",
+        "action hop(height 20cm) {\n    duration 1s\n}",
+        "action hop {\n    duration 1s\n    at 50% { hips drop -10cm }\n    variant high { amplitude 150% }\n}",
+    ),
+    "VDS141": Code(
+        "an action without a duration",
+        "Poses and reaches are placed in time, as shares of the action's duration, so it has to be said. Only an "
+        "action that does nothing but travel has none.",
+        "action hop {\n    at 50% { hips drop -10cm }\n}",
+        "action hop {\n    duration 1s\n    at 50% { hips drop -10cm }\n}",
+    ),
+    "VDS142": Code(
+        "a time that is neither a share nor seconds",
+        "A time inside an action is a share of its duration, `30%`, or seconds from its start, `0.8s`.",
+        "action hop {\n    duration 1s\n    at 0.5 { hips drop -10cm }\n}",
+        "action hop {\n    duration 1s\n    at 50% { hips drop -10cm }\n}",
+    ),
+    "VDS143": Code(
+        "a time outside the action",
+        "An action goes from 0% to 100% of its duration.",
+        "action hop {\n    duration 1s\n    at 1.5s { hips drop -10cm }\n}",
+        "action hop {\n    duration 2s\n    at 1.5s { hips drop -10cm }\n}",
+    ),
+    "VDS144": Code(
+        "times that do not follow one another",
+        "A reach leaves `from`, is there `at`, stays `until` and is `back`, in this order; other spans go `from` a "
+        "time `to` a later one.",
+        "action tap {\n    duration 1s\n    reach right chest, from 50%, at 30%\n}",
+        "action tap {\n    duration 1s\n    reach right chest, from 30%, at 50%\n}",
+    ),
     # -- the cast (VDS160-169) -----------------------------------------------------------
     "VDS160": Code(
         "unknown feature of a person",

@@ -54,8 +54,9 @@ def test_failure_of_the_swap_puts_the_old_build_back(tmp_path: Path, monkeypatch
         rename(a, b)
 
     monkeypatch.setattr(folder_module.os, "rename", failing)
-    with pytest.raises(BuildFolderError, match="No space left"):
+    with pytest.raises(BuildFolderError, match="No space left") as caught:
         put_build(target, "two")
+    assert caught.value.errno == 28
     assert text_of(target) == "one"
     assert [p.name for p in tmp_path.iterdir()] == ["story"]
 

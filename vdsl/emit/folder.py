@@ -39,7 +39,7 @@ def staged_build(target: str | Path) -> Iterator[Path]:
         stage = Path(tempfile.mkdtemp(prefix=f".{place.name}.new-", dir=place.parent))
         stage.chmod(0o777 & ~_umask())
     except OSError as error:
-        raise BuildFolderError(f"cannot write to {place.parent}: {error.strerror or error}") from error
+        raise _failure(f"cannot write to {place.parent}", error) from error
     try:
         yield stage
         _swap(stage, place)
@@ -55,12 +55,18 @@ def write_bytes(path: Path, data: bytes) -> None:
         os.replace(part, path)
     except OSError as error:
         part.unlink(missing_ok=True)
-        raise BuildFolderError(f"cannot write {path}: {error.strerror or error}") from error
+        raise _failure(f"cannot write {path}", error) from error
 
 
 def write_text(path: Path, text: str) -> None:
     """:func:`write_bytes` of UTF-8 text."""
     write_bytes(path, text.encode("utf-8", "replace"))
+
+
+def _failure(what: str, error: OSError) -> BuildFolderError:
+    failure = BuildFolderError(f"{what}: {error.strerror or error}")
+    failure.errno = error.errno
+    return failure
 
 
 def _refuse_foreign(place: Path) -> None:
@@ -95,7 +101,7 @@ def _swap(stage: Path, place: Path) -> None:
                 os.rename(old, place)
             raise
     except OSError as error:
-        raise BuildFolderError(f"cannot put the build at {place}: {error.strerror or error}") from error
+        raise _failure(f"cannot put the build at {place}", error) from error
     if had_old:
         _carry_over(old, place)
         shutil.rmtree(old, ignore_errors=True)

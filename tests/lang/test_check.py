@@ -7,10 +7,10 @@ import math
 from pathlib import Path
 
 import pytest
-from catalog import SmallCatalog
-from helpers import HEAD, board, checked, codes
 from hypothesis import given, seed, settings
 from hypothesis import strategies as st
+from lang_helpers import HEAD, board, checked, codes
+from small_catalog import SmallCatalog
 
 from vdsl.lang import Report, Settings, Source, check, ir, parse
 from vdsl.lang.codes import CODES

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import pytest
-from catalog import SmallCatalog
+from small_catalog import SmallCatalog
 
 from vdsl.lang import Diagnostic, Report, Source, check, parse
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from catalog import SmallCatalog
+from small_catalog import SmallCatalog
 
 from vdsl.lang import Report, Settings, Source, Storyboard, check, parse
 

@@ -40,8 +40,8 @@ class Backend:
             return np.zeros(shape, dtype)
         import taichi as ti
 
-        kinds = {"f": ti.f32, "i": ti.i32, "u": ti.u32 if np.dtype(dtype).itemsize == 4 else ti.u64}
-        return ti.ndarray(kinds[np.dtype(dtype).kind], shape=shape)
+        kinds = {"f4": ti.f32, "i4": ti.i32, "u1": ti.u8, "u4": ti.u32, "u8": ti.u64}
+        return ti.ndarray(kinds[np.dtype(dtype).str[1:]], shape=shape)
 
     def upload(self, array: NDArray[Any]) -> Any:
         """A copy of ``array`` (at least one element long) where kernels can use it."""

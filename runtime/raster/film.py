@@ -7,8 +7,8 @@ from numpy.typing import NDArray
 
 EXPOSURE = 0.62
 KNEE = 0.7  # above it, tones bend softly towards white
-FILM_RANGE = 4.0  # most scene light told apart
-FILM_SIZE = 16384  # steps of the table
+FILM_RANGE = 2.5  # most scene light told apart
+FILM_SIZE = 8192  # steps of the table
 
 
 def to_linear(color: NDArray[np.floating]) -> NDArray[np.float64]:
@@ -37,7 +37,7 @@ def unexposed(picture: NDArray[np.floating]) -> NDArray[np.float64]:
     return np.minimum(x / EXPOSURE, FILM_RANGE)
 
 
-def film_table() -> NDArray[np.uint32]:
+def film_table() -> NDArray[np.uint8]:
     """sRGB bytes for scene light 0..FILM_RANGE in even steps."""
     light = np.linspace(0.0, FILM_RANGE, FILM_SIZE)
-    return np.round(to_encoded(exposed(light)) * 255.0).astype(np.uint32)
+    return np.round(to_encoded(exposed(light)) * 255.0).astype(np.uint8)

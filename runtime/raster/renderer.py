@@ -18,6 +18,7 @@ from .prepare import Prepared, prepare
 from .types import Camera, Frames, RenderScene, Style, Views
 
 CHUNK_PIXELS = 8_000_000  # pixels in flight; about 30 bytes each
+CHUNK_VERTICES = 2_000_000  # skinned vertices in flight; about 50 bytes each
 SET_SHADOW = 2048  # texels along the set's shadow map
 SET_TEXEL = 0.006  # metres, finest
 SHADOW = 512  # texels along a moment's shadow map, for large pictures; half for small ones
@@ -136,7 +137,7 @@ class Renderer:
         count = len(moment)
         color = np.empty((count, height, width, 3), np.uint8)
         objects = np.empty((count, height, width), np.int32) if ids else None
-        chunk = max(1, CHUNK_PIXELS // (width * height))
+        chunk = max(1, min(CHUNK_PIXELS // (width * height), CHUNK_VERTICES // max(len(self._scene.rest), 1)))
         for begin in range(0, count, chunk):
             part = slice(begin, min(count, begin + chunk))
             used, local = np.unique(moment[part], return_inverse=True)
@@ -261,12 +262,15 @@ class Renderer:
         edge = self._buffer("edge", (pixels,), np.uint32)
         view_, moment_, hidden_ = up(view), up(moment), up(hidden)
         bands = 1 if views >= 2 * self.backend.threads else min(height, 2 * self.backend.threads)
+        seen = self._buffer("screen", (views, max(len(scene.rest), 1), 3), np.float32)
+        self._geometry.project(view_, moment_, self._position, len(scene.rest), views, seen)
         self._geometry.raster_serial(
             view_,
             moment_,
             hidden_,
             a["vertices"],
             self._position,
+            seen,
             a["faces"],
             a["clusters"],
             a["sphere"],

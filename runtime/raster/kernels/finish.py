@@ -9,10 +9,9 @@ from types import SimpleNamespace
 import taichi as ti
 
 from ..types import Style
-from .geometry import f1, f2, i1, u32s, u64s, vec3
+from .geometry import f1, f2, i1, u8s, u32s, u64s, vec3
 from .shading import NOTHING, encode, unpack_normal
 
-u8s = ti.types.ndarray(ti.u8, ndim=1)
 i32s = ti.types.ndarray(ti.i32, ndim=1)
 SEARCH = 12  # pixels looked along an edge, either way
 
@@ -99,13 +98,20 @@ def finish_kernels(style: Style) -> SimpleNamespace:
         """The picture's pixel with its share of ink. weight: width in pixels of a line 1 m away."""
         out = picture[at]
         e = edge[at]
-        if e != ti.u32(NOTHING):
-            left = at - 1 if x > 0 else at
-            right = at + 1 if x < width - 1 else at
-            above = at - width if y > 0 else at
-            below = at + width if y < height - 1 else at
+        left = at - 1 if x > 0 else at
+        right = at + 1 if x < width - 1 else at
+        above = at - width if y > 0 else at
+        below = at + width if y < height - 1 else at
+        t = ti.cast(vis[at], ti.u32)
+        same = (
+            t == ti.cast(vis[left], ti.u32)
+            and t == ti.cast(vis[right], ti.u32)
+            and t == ti.cast(vis[above], ti.u32)
+            and t == ti.cast(vis[below], ti.u32)
+        )
+        moves = ti.cast(e >> 16, ti.i32) >= first_moving
+        if e != ti.u32(NOTHING) and (moves or not same):
             w = nearness(vis, at)
-            moves = ti.cast(e >> 16, ti.i32) >= first_moving
             broad = ti.min(ti.max(weight * w, 1.0), ti.max(1.0, height / 360.0))
             ring = ti.Vector([left, right, above, below])
             ink = 0.0

@@ -18,6 +18,7 @@ f3 = ti.types.ndarray(ti.f32, ndim=3)
 f4 = ti.types.ndarray(ti.f32, ndim=4)
 i1 = ti.types.ndarray(ti.i32, ndim=1)
 i2 = ti.types.ndarray(ti.i32, ndim=2)
+u8s = ti.types.ndarray(ti.u8, ndim=1)
 u32s = ti.types.ndarray(ti.u32, ndim=1)
 u64s = ti.types.ndarray(ti.u64, ndim=1)
 
@@ -94,23 +95,28 @@ def to_pixel(v):
 @ti.func
 def fill(vis: ti.template(), exact: ti.template(), base, width, y_from, y_to, y_step, low, a, b, c):
     """Walk the spans of one screen triangle; corners are (x, y, 1/z), ``low`` the low word of the key."""
-    if a.y > b.y:
-        a, b = b, a
-    if b.y > c.y:
-        b, c = c, b
-    if a.y > b.y:
-        a, b = b, a
-    y0 = ti.max(y_from, ti.cast(ti.max(to_pixel(a.y), -1e6), ti.i32))
-    y1 = ti.min(y_to, ti.cast(ti.min(to_pixel(c.y), 1e6), ti.i32))
-    if y0 < y1:
+    y0 = ti.max(y_from, ti.cast(ti.max(to_pixel(ti.min(a.y, b.y, c.y)), -1e6), ti.i32))
+    y1 = ti.min(y_to, ti.cast(ti.min(to_pixel(ti.max(a.y, b.y, c.y)), 1e6), ti.i32))
+    left = to_pixel(ti.min(a.x, b.x, c.x))
+    right = to_pixel(ti.max(a.x, b.x, c.x))
+    limit = ti.cast(width, ti.f32)
+    # many triangles lie between pixel centres
+    if y0 < y1 and left < right and right > 0 and left < limit:
+        if a.y > b.y:
+            a, b = b, a
+        if b.y > c.y:
+            b, c = c, b
+        if a.y > b.y:
+            a, b = b, a
         y0 += (y_from - y0) % y_step if ti.static(not exact) else 0
         ab = b - a
         ac = c - a
         bc = c - b
         det = ab.x * ac.y - ac.x * ab.y
         if det != 0:
-            slope_x = (ab.z * ac.y - ac.z * ab.y) / det
-            slope_y = (ac.z * ab.x - ab.z * ac.x) / det
+            inverse = 1.0 / det
+            slope_x = (ab.z * ac.y - ac.z * ab.y) * inverse
+            slope_y = (ac.z * ab.x - ab.z * ac.x) * inverse
             least = ti.min(a.z, b.z, c.z)
             most = ti.max(a.z, b.z, c.z)
             long = ac.x / ac.y
@@ -123,7 +129,6 @@ def fill(vis: ti.template(), exact: ti.template(), base, width, y_from, y_to, y_
                 xb = a.x + (centre - a.y) * upper
                 if centre >= b.y:
                     xb = b.x + (centre - b.y) * lower
-                limit = ti.cast(width, ti.f32)
                 x0 = ti.cast(ti.min(ti.max(to_pixel(ti.min(xa, xb)), 0.0), limit), ti.i32)
                 x1 = ti.cast(ti.min(ti.max(to_pixel(ti.max(xa, xb)), 0.0), limit), ti.i32)
                 row = a.z + (centre - a.y) * slope_y + (0.5 - a.x) * slope_x
@@ -140,13 +145,14 @@ def fill(vis: ti.template(), exact: ti.template(), base, width, y_from, y_to, y_
 
 
 @ti.func
-def draw(
-    vis: ti.template(), exact: ti.template(), base, width, y_from, y_to, y_step, low, cull, scale, half, p0, p1, p2
-):
-    """Cull, clip at the near plane, project and fill one triangle given in camera coordinates.
+def cut(cull, scale, half, p0, p1, p2):
+    """Cull, clip at the near plane and project one triangle given in camera coordinates.
 
-    Right, up, forward is a left-handed frame: a positive determinant faces the camera.
+    Returns how many triangles are left (0..2) and a fan of four corners on the screen. Right, up, forward is
+    a left-handed frame: a positive determinant faces the camera.
     """
+    pieces = 0
+    sa, sb, sc, sd = vec3(0), vec3(0), vec3(0), vec3(0)
     facing = p0.dot(p1.cross(p2))
     if facing > 0 or (facing < 0 and not cull):
         inside = ti.cast(p0.z > NEAR, ti.i32) + ti.cast(p1.z > NEAR, ti.i32) + ti.cast(p2.z > NEAR, ti.i32)
@@ -177,10 +183,7 @@ def draw(
             sb = screen(b, scale, half)
             sc = screen(c, scale, half)
             sd = screen(d, scale, half)
-            for k in range(pieces):
-                if k == 1:
-                    sb, sc = sc, sd
-                fill(vis, exact, base, width, y_from, y_to, y_step, low, sa, sb, sc)
+    return pieces, sa, sb, sc, sd
 
 
 @ti.func
@@ -189,20 +192,19 @@ def screen(p, scale, half):
     return vec3(half.x + scale.x * p.x * w, half.y - scale.y * p.y * w, w)
 
 
-@ti.func
-def in_sight(view: ti.template(), n, centre, radius):
-    """Whether a sphere touches the view's pyramid."""
-    d = centre - part3(view, n, 0)
-    x = d.dot(part3(view, n, 3))
-    y = d.dot(part3(view, n, 6))
-    z = d.dot(part3(view, n, 9))
-    tx = view[n, 14] / view[n, 12]
-    ty = view[n, 15] / view[n, 13]
-    return (
-        z > NEAR - radius
-        and (ti.abs(x) - z * tx) < radius * ti.sqrt(1 + tx * tx)
-        and (ti.abs(y) - z * ty) < radius * ti.sqrt(1 + ty * ty)
-    )
+@ti.kernel
+def project(view: f2, moment: i1, position: f3, vertices: ti.i32, views: ti.i32, seen: f3):
+    """Screen coordinates (x, y, 1/z) of the skinned vertices in every view; 1/z is -1 behind the near plane."""
+    for i in range(views * vertices):
+        n = i // vertices
+        v = i % vertices
+        d = item3(position, moment[n], v) - part3(view, n, 0)
+        p = vec3(part3(view, n, 3).dot(d), part3(view, n, 6).dot(d), part3(view, n, 9).dot(d))
+        s = vec3(0, 0, -1)
+        if p.z > NEAR:
+            s = screen(p, ti.Vector([view[n, 12], view[n, 13]]), ti.Vector([view[n, 14], view[n, 15]]))
+        for a in ti.static(range(3)):
+            seen[n, v, a] = s[a]
 
 
 @ti.kernel
@@ -212,6 +214,7 @@ def raster_serial(
     hidden: i2,
     vertices: f2,
     position: f3,
+    seen: f3,
     faces: i2,
     clusters: i2,
     sphere: f2,
@@ -243,50 +246,72 @@ def raster_serial(
         forward = part3(view, n, 9)
         scale = ti.Vector([view[n, 12], view[n, 13]])
         half = ti.Vector([view[n, 14], view[n, 15]])
+        # the pyramid of the view: slopes of its sides, and what a radius counts against them
+        side_x, side_y = half.x / scale.x, half.y / scale.y
+        grow_x, grow_y = ti.sqrt(1 + side_x * side_x), ti.sqrt(1 + side_y * side_y)
         m = moment[n]
         for k in range(clusters.shape[0]):
             # the moving ones first: they are near, and hide much
-            c = (k + moving_first) % clusters.shape[0]
+            c = k + moving_first
+            if c >= clusters.shape[0]:
+                c -= clusters.shape[0]
             moving = c >= moving_first
-            ball = ti.Vector([0.0, 0.0, 0.0, 0.0])
-            if moving:
-                for a in ti.static(range(4)):
-                    ball[a] = moving_sphere[m, c - moving_first, a]
-            else:
-                for a in ti.static(range(4)):
-                    ball[a] = sphere[c, a]
-            wall = clusters[c, 3]
+            ball = vec3(0)
+            radius = 0.0
             shown = True
-            if wall >= 0:
-                shown = hidden[n, wall] == 0
-            if shown and in_sight(view, n, ball.xyz, ball.w):
+            if moving:
+                ball = item3(moving_sphere, m, c - moving_first)
+                radius = moving_sphere[m, c - moving_first, 3]
+            else:
+                ball = row3(sphere, c)
+                radius = sphere[c, 3]
+                wall = clusters[c, 3]
+                if wall >= 0:
+                    shown = hidden[n, wall] == 0
+            ball -= eye
+            z = forward.dot(ball)
+            if (
+                shown
+                and z > NEAR - radius
+                and ti.abs(right.dot(ball)) - z * side_x < radius * grow_x
+                and ti.abs(up.dot(ball)) - z * side_y < radius * grow_y
+            ):
                 cull = clusters[c, 2] != 0
                 for t in range(clusters[c, 0], clusters[c, 0] + clusters[c, 1]):
-                    p0, p1, p2 = vec3(0), vec3(0), vec3(0)
+                    i0, i1_, i2_ = faces[t, 0], faces[t, 1], faces[t, 2]
+                    sa, sb, sc, sd = vec3(0), vec3(0), vec3(0), vec3(0)
+                    pieces = 0
+                    whole = False
                     if moving:
-                        p0 = item3(position, m, faces[t, 0] - static_vertices)
-                        p1 = item3(position, m, faces[t, 1] - static_vertices)
-                        p2 = item3(position, m, faces[t, 2] - static_vertices)
-                    else:
-                        p0 = row3(vertices, faces[t, 0])
-                        p1 = row3(vertices, faces[t, 1])
-                        p2 = row3(vertices, faces[t, 2])
-                    p0 -= eye
-                    p1 -= eye
-                    p2 -= eye
-                    draw(
-                        vis,
-                        True,
-                        base,
-                        width,
-                        y_from,
-                        y_to,
-                        1,
-                        ti.cast(t + 1, ti.u64),
-                        cull,
-                        scale,
-                        half,
-                        vec3(right.dot(p0), up.dot(p0), forward.dot(p0)),
-                        vec3(right.dot(p1), up.dot(p1), forward.dot(p1)),
-                        vec3(right.dot(p2), up.dot(p2), forward.dot(p2)),
-                    )
+                        sa = item3(seen, n, i0 - static_vertices)
+                        sb = item3(seen, n, i1_ - static_vertices)
+                        sc = item3(seen, n, i2_ - static_vertices)
+                        whole = sa.z > 0 and sb.z > 0 and sc.z > 0
+                        if whole:
+                            turn = (sb.x - sa.x) * (sc.y - sa.y) - (sc.x - sa.x) * (sb.y - sa.y)
+                            pieces = 1 if turn < 0 or (turn > 0 and not cull) else 0
+                    if not whole:
+                        p0, p1, p2 = vec3(0), vec3(0), vec3(0)
+                        if moving:
+                            p0 = item3(position, m, i0 - static_vertices)
+                            p1 = item3(position, m, i1_ - static_vertices)
+                            p2 = item3(position, m, i2_ - static_vertices)
+                        else:
+                            p0 = row3(vertices, i0)
+                            p1 = row3(vertices, i1_)
+                            p2 = row3(vertices, i2_)
+                        p0 -= eye
+                        p1 -= eye
+                        p2 -= eye
+                        pieces, sa, sb, sc, sd = cut(
+                            cull,
+                            scale,
+                            half,
+                            vec3(right.dot(p0), up.dot(p0), forward.dot(p0)),
+                            vec3(right.dot(p1), up.dot(p1), forward.dot(p1)),
+                            vec3(right.dot(p2), up.dot(p2), forward.dot(p2)),
+                        )
+                    for j in range(pieces):
+                        if j == 1:
+                            sb, sc = sc, sd
+                        fill(vis, True, base, width, y_from, y_to, 1, ti.cast(t + 1, ti.u64), sa, sb, sc)

@@ -109,11 +109,23 @@ def pattern(material, p, n, blur):
         if strong > 0:
             out = 1.0 + (value_noise(u * 80.0, v * 80.0) - 0.5) * strong
         out *= 1.0 + (value_noise(u * 3.0, v * 3.0) - 0.5) * 0.05
-    elif material == 10:  # concrete
-        broad = value_noise(u * 1.3, v * 1.3) * 0.65 + value_noise(u * 5.1, v * 5.1) * 0.35
-        out = 1.0 + (broad - 0.5) * 0.12
-    elif material == 11:  # plaster
-        out = 1.0 + (value_noise(u * 1.7, v * 1.7) - 0.5) * 0.035
+    return out
+
+
+@ti.func
+def broad_pattern(material, p, n):
+    """The part of a pattern that is broader than any stretch of pixels; sampled sparsely."""
+    out = 1.0
+    if material >= 10:
+        u, v = p.x, p.y
+        if ti.abs(n.z) < 0.7:
+            v = p.z
+            if ti.abs(n.x) > ti.abs(n.y):
+                u = p.y
+        if material == 10:  # concrete
+            out = 1.0 + (value_noise(u * 1.3, v * 1.3) - 0.5) * 0.12
+        else:  # plaster
+            out = 1.0 + (value_noise(u * 1.7, v * 1.7) - 0.5) * 0.035
     return out
 
 
@@ -123,4 +135,4 @@ def glazed(base, ray, p):
     band = (p.x + p.y) * 0.8 + p.z * 1.1
     t = band - ti.floor(band)
     streak = 0.10 if (t < 0.16 or 0.24 < t < 0.30) else 0.0
-    return base * 0.45 + vec3(0.46, 0.50, 0.53) + streak
+    return base * 0.7 + vec3(0.78, 0.84, 0.88) + 2.0 * streak

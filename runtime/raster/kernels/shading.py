@@ -11,9 +11,9 @@ import taichi as ti
 
 from ..film import FILM_RANGE, FILM_SIZE
 from ..types import Style
-from .geometry import f1, f2, f3, i1, i2, item3, part3, row3, u32s, u64s, vec3
+from .geometry import f1, f2, f3, i1, i2, item3, part3, row3, u8s, u32s, u64s, vec3
 from .light import BLOCK, across, lit, unblocked
-from .pattern import glazed, pattern
+from .pattern import broad_pattern, glazed, pattern
 
 NOTHING = 0xFFFF0000
 STRETCH = 8  # pixels
@@ -61,9 +61,9 @@ def developed(light, film: ti.template()):
     """Scene light to packed 8-bit sRGB and luma, through the film's table."""
     limit = ti.static(FILM_RANGE)
     scale = ti.static((FILM_SIZE - 1) / FILM_RANGE)
-    r8 = film[ti.cast(ti.min(ti.max(light.x, 0.0), limit) * scale + 0.5, ti.i32)]
-    g8 = film[ti.cast(ti.min(ti.max(light.y, 0.0), limit) * scale + 0.5, ti.i32)]
-    b8 = film[ti.cast(ti.min(ti.max(light.z, 0.0), limit) * scale + 0.5, ti.i32)]
+    r8 = ti.cast(film[ti.cast(ti.min(ti.max(light.x, 0.0), limit) * scale + 0.5, ti.i32)], ti.u32)
+    g8 = ti.cast(film[ti.cast(ti.min(ti.max(light.y, 0.0), limit) * scale + 0.5, ti.i32)], ti.u32)
+    b8 = ti.cast(film[ti.cast(ti.min(ti.max(light.z, 0.0), limit) * scale + 0.5, ti.i32)], ti.u32)
     return r8 | (g8 << 8) | (b8 << 16) | (((r8 * 5 + g8 * 9 + b8 * 2) >> 4) << 24)
 
 
@@ -164,7 +164,7 @@ def shading_kernels(style: Style) -> SimpleNamespace:
         columns: ti.i32,
         rows: ti.i32,
         ground: f1,
-        film: u32s,
+        film: u8s,
         vis: u64s,
         picture: u32s,
         edge: u32s,
@@ -202,25 +202,30 @@ def shading_kernels(style: Style) -> SimpleNamespace:
             material = 0
             slant = 0.0
             # light along a stretch of one triangle of the set: its ends are looked up, the rest lies between
-            shade, shade_step, shade_end = 1.0, 0.0, 1.0
-            clear, clear_end = False, False
-            known, joined = 0, False
-            for x in range(width):
+            shade, shade_end = 1.0, 1.0
+            tone, tone_end = 1.0, 1.0
+            haze, haze_end = 0.0, 0.0
+            free, free_end = False, False
+            end_at = vec3(0)
+            joined = False
+            x = 0
+            while x < width:
                 at = line * width + x
                 key = vis[at]
-                ray = first + step * ti.cast(x, ti.f32)
-                out = vec3(0)
+                stop = x + 1
                 if key == 0:
                     last = -1
-                    mark = ti.u32(NOTHING)
+                    joined = False
+                    ray = first + step * ti.cast(x, ti.f32)
                     up = ray.z / ray.norm()
-                    out = horizon + (zenith - horizon) * ti.min(ti.max(up * 1.6, 0.0), 1.0)
+                    picture[at] = developed(
+                        horizon + (zenith - horizon) * ti.min(ti.max(up * 1.6, 0.0), 1.0), film
+                    )
+                    edge[at] = ti.u32(NOTHING)
                 else:
                     t = ti.cast(ti.cast(key, ti.u32), ti.i32) - 1
-                    depth = 1.0 / ti.bit_cast(ti.cast(key >> 32, ti.u32), ti.f32)
                     if t != last:
                         last = t
-                        known = x
                         joined = False
                         a, b, c = faces[t, 0], faces[t, 1], faces[t, 2]
                         flat = (info[t, 1] >> 8) & 1
@@ -252,97 +257,125 @@ def shading_kernels(style: Style) -> SimpleNamespace:
                             inverse = 1.0 / ti.max(cross.norm_sqr(), 1e-20)
                             g1 = q2.cross(cross) * inverse
                             g2 = cross.cross(q1) * inverse
-                        else:
-                            facing = toned(n0.dot(sun))
-                            ambient = under + (sky - under) * (n0.z * 0.5 + 0.5)
+                        facing = toned(n0.dot(sun))
+                        ambient = under + (sky - under) * (n0.z * 0.5 + 0.5)
                         mark = (ti.cast(info[t, 0], ti.u32) << 16) | pack_normal(n0)
                         if material != 0 and not moves:
                             # how much longer a pixel is on the surface than across it, tamed at grazing angles
+                            ray = first + step * ti.cast(x, ti.f32)
                             cosine = ti.abs(cross.dot(ray)) / ti.max(ray.norm() * cross.norm(), 1e-12)
                             slant = 1.0 / (ti.max(ti.sqrt(cosine), 0.15) * view[n, 13])
-                    where = eye + ray * depth
-                    nn = n0
-                    if not flat:
-                        d = where - p0
-                        b1 = ti.min(ti.max(d.dot(g1), 0.0), 1.0)
-                        b2 = ti.min(ti.max(d.dot(g2), 0.0), 1.0)
-                        nn = n0 + n1 * b1 + n2 * b2
-                        nn *= 1.0 / ti.sqrt(ti.max(nn.norm_sqr(), 1e-12))
-                        mark = (mark & ti.u32(0xFFFF0000)) | pack_normal(nn)
-                        facing = toned(nn.dot(sun))
-                        ambient = under + (sky - under) * (nn.z * 0.5 + 0.5)
-                    if material == 7:
-                        out = glazed(base, ray, where)
-                    elif material == 8:
-                        out = base * 2.0 + 0.2
+                    clear = moves or not shadows
+                    step_shade, step_tone = 0.0, 0.0
+                    step_light = vec3(0)
+                    light_now = vec3(0)
+                    even = False
+                    if not moves and material != 7 and material != 8:
+                        # a stretch of one triangle: look its two ends up, the rest lies between
+                        end = x
+                        last_x = ti.min(width - 1, x + STRETCH)
+                        while end < last_x and ti.cast(vis[at + end - x + 1], ti.u32) == ti.cast(key, ti.u32):
+                            end += 1
+                        begin_at = vec3(0)
+                        if joined:
+                            shade, tone, free = shade_end, tone_end, free_end
+                            begin_at = end_at
+                        scale = 0.0
+                        for k in range(2):
+                            if (k == 0 and not joined) or (k == 1 and end > x):
+                                xx = x if k == 0 else end
+                                depth = 1.0 / ti.bit_cast(ti.cast(vis[at + xx - x] >> 32, ti.u32), ti.f32)
+                                end_at = eye + (first + step * ti.cast(xx, ti.f32)) * depth
+                                if ti.static(occlusion):
+                                    shade_end = sheltered(
+                                        end_at, n0, m, corner, volume_low[3], nx, ny, nz, values, floor, columns, rows, ground
+                                    )
+                                tone_end = broad_pattern(material, end_at, n0)
+                                if ti.static(shadows):
+                                    q = across(basis, end_at + n0 * 0.02)
+                                    free_end = unblocked(q, m, frame, size, coarse) and unblocked(
+                                        q, 0, set_frame, set_size, set_coarse
+                                    )
+                                haze_end = ti.min(ti.max((depth - 2.0) * 0.0144, 0.0), 0.36)
+                                if k == 0:
+                                    begin_at = end_at
+                                    shade, tone, free = shade_end, tone_end, free_end
+                                    haze = haze_end
+                        joined = end > x
+                        if joined:
+                            stop = end
+                            scale = 1.0 / ti.cast(end - x, ti.f32)
+                            step_shade = (shade_end - shade) * scale
+                            step_tone = (tone_end - tone) * scale
+                        reach = (end_at - begin_at).norm()
+                        if ti.static(shadows):
+                            clear = facing == 0 or (
+                                free
+                                and (free_end or not joined)
+                                and reach * ti.max(frame[m, 2], set_frame[0, 2]) < BLOCK
+                            )
+                        even = flat and clear and (material == 0 or material >= 10)
+                        if even:
+                            fill_light = 0.3 + 0.7 * facing * (0.7 + 0.3 * shade)
+                            light_now = base * (ambient * shade + sun_color * fill_light) * tone
+                            light_now += (horizon - light_now) * haze
+                            if joined:
+                                fill_light = 0.3 + 0.7 * facing * (0.7 + 0.3 * shade_end)
+                                there = base * (ambient * shade_end + sun_color * fill_light) * tone_end
+                                there += (horizon - there) * haze_end
+                                step_light = (there - light_now) * scale
+                        haze = haze_end
+                    if even:
+                        for i in range(at, at + stop - x):
+                            picture[i] = developed(light_now, film)
+                            edge[i] = mark
+                            light_now += step_light
                     else:
-                        key_light = facing
-                        albedo = base
-                        if not moves:
-                            if x >= known:
-                                end = x
-                                last_x = ti.min(width - 1, x + STRETCH)
-                                while end < last_x and ti.cast(vis[at + end - x + 1], ti.u32) == ti.cast(key, ti.u32):
-                                    end += 1
-                                if joined:
-                                    shade = shade_end
-                                    clear = clear_end
-                                else:
-                                    if ti.static(occlusion):
-                                        shade = sheltered(
-                                            where, nn, m, corner, volume_low[3], nx, ny, nz, values, floor, columns, rows, ground
-                                        )
-                                    if ti.static(shadows):
+                        for xx in range(x, stop):
+                            i = at + xx - x
+                            ray = first + step * ti.cast(xx, ti.f32)
+                            depth = 1.0 / ti.bit_cast(ti.cast(vis[i] >> 32, ti.u32), ti.f32)
+                            where = eye + ray * depth
+                            nn = n0
+                            if not flat:
+                                d = where - p0
+                                b1 = ti.min(ti.max(d.dot(g1), 0.0), 1.0)
+                                b2 = ti.min(ti.max(d.dot(g2), 0.0), 1.0)
+                                nn = n0 + n1 * b1 + n2 * b2
+                                nn *= 1.0 / ti.sqrt(ti.max(nn.norm_sqr(), 1e-12))
+                                mark = (mark & ti.u32(0xFFFF0000)) | pack_normal(nn)
+                                facing = toned(nn.dot(sun))
+                                ambient = under + (sky - under) * (nn.z * 0.5 + 0.5)
+                            out = vec3(0)
+                            if material == 7:
+                                out = glazed(base, ray, where)
+                            elif material == 8:
+                                out = base * 2.0 + 0.2
+                            else:
+                                key_light = facing
+                                if ti.static(shadows):
+                                    if key_light > 0 and (moves or not clear):
                                         q = across(basis, where + nn * 0.02)
-                                        clear = unblocked(q, m, frame, size, coarse) and unblocked(
-                                            q, 0, set_frame, set_size, set_coarse
-                                        )
-                                shade_step = 0.0
-                                known = end
-                                joined = end > x
-                                if joined:
-                                    depth_end = 1.0 / ti.bit_cast(ti.cast(vis[at + end - x] >> 32, ti.u32), ti.f32)
-                                    there = eye + (first + step * ti.cast(end, ti.f32)) * depth_end
-                                    if ti.static(occlusion):
-                                        shade_end = sheltered(
-                                            there, nn, m, corner, volume_low[3], nx, ny, nz, values, floor, columns, rows, ground
-                                        )
-                                        shade_step = (shade_end - shade) / ti.cast(end - x, ti.f32)
-                                    if ti.static(shadows):
-                                        q = across(basis, there + nn * 0.02)
-                                        clear_end = unblocked(q, m, frame, size, coarse) and unblocked(
-                                            q, 0, set_frame, set_size, set_coarse
-                                        )
-                                        reach = (there - where).norm()
-                                        clear = clear and clear_end and (
-                                            reach * ti.max(frame[m, 2], set_frame[0, 2]) < BLOCK
-                                        )
+                                        q.z += 0.006
+                                        key_light *= lit(q, m, frame, size, depth_map, coarse)
+                                        q.z += 0.006
+                                        key_light *= lit(q, 0, set_frame, set_size, set_depth, set_coarse)
+                                albedo = base
+                                if moves:
+                                    out = albedo * (ambient + sun_color * (0.1 + 0.9 * key_light))
                                 else:
-                                    known = x + 1
-                            if ti.static(shadows):
-                                if key_light > 0 and not clear:
-                                    q = across(basis, where + nn * 0.02)
-                                    key_light *= lit(q, m, frame, size, depth_map, coarse)
-                                    q.z += 0.01
-                                    key_light *= lit(q, 0, set_frame, set_size, set_depth, set_coarse)
-                            key_light = 0.3 + 0.7 * key_light * (0.7 + 0.3 * shade)
-                            if material != 0:
-                                albedo *= pattern(material, where, nn, depth * slant)
-                            out = albedo * (ambient * shade + sun_color * key_light)
-                            shade += shade_step
-                        else:
-                            if ti.static(shadows):
-                                if key_light > 0:
-                                    q = across(basis, where + nn * 0.02)
-                                    q.z += 0.006
-                                    key_light *= lit(q, m, frame, size, depth_map, coarse)
-                                    key_light *= lit(q, 0, set_frame, set_size, set_depth, set_coarse)
-                            out = albedo * (ambient + sun_color * (0.1 + 0.9 * key_light))
-                    haze = ti.min(ti.max((depth - 2.0) * 0.04, 0.0), 1.0)
-                    haze *= 0.15 if moves else 0.36
-                    out += (horizon - out) * haze
-                picture[at] = developed(out, film)
-                edge[at] = mark
+                                    if material != 0:
+                                        albedo *= tone * pattern(material, where, nn, depth * slant)
+                                    key_light = 0.3 + 0.7 * key_light * (0.7 + 0.3 * shade)
+                                    out = albedo * (ambient * shade + sun_color * key_light)
+                                    shade += step_shade
+                                    tone += step_tone
+                            far = ti.min(ti.max((depth - 2.0) * 0.04, 0.0), 1.0)
+                            far *= 0.15 if moves else 0.36
+                            out += (horizon - out) * far
+                            picture[i] = developed(out, film)
+                            edge[i] = mark
+                x = stop
 
     @ti.func
     def sheltered(where, nn, m, corner, inverse, nx, ny, nz, values: ti.template(), floor: ti.template(), columns, rows, ground: ti.template()):

@@ -21,7 +21,7 @@ from .features import head_pieces, limb_pieces
 from .field import gradient
 from .head import Head
 from .outfit import bare_legs, bottom, shoes, top
-from .pieces import PARTS, Piece, other_side
+from .pieces import PARTS, Piece, other_side, tucked
 from .skeleton import PALETTE, Skeleton
 from .spec import BodySpec
 from .surface import Patch
@@ -65,14 +65,7 @@ def build_body(spec: BodySpec, cache: Path | None = None) -> Body:
 def make_body(spec: BodySpec) -> Body:
     """Builds a body, no cache involved."""
     figure = Figure(spec)
-    pieces = [
-        *head_pieces(figure),
-        *limb_pieces(figure),
-        *top(figure),
-        *bottom(figure),
-        *shoes(figure),
-        *bare_legs(figure),
-    ]
+    pieces = _pieces(figure)
     rows = [_finish(figure, piece) for piece in pieces if len(piece.patch.faces)]
     counts = np.cumsum([0] + [len(r[0]) for r in rows])
     faces = np.concatenate([r[2] + n for r, n in zip(rows, counts[:-1], strict=True)])
@@ -88,6 +81,16 @@ def make_body(spec: BodySpec) -> Body:
     )
     joints, weights = strongest(np.concatenate([r[3] for r in rows]))
     return Body(spec, figure.skeleton, mesh, joints, weights)
+
+
+def _pieces(figure: Figure) -> list[Piece]:
+    """Everything a person is made of; what is worn under the top keeps under it."""
+    upper = top(figure)
+    cover = upper[0].solid
+    under = [*head_pieces(figure), *limb_pieces(figure), *bottom(figure)]
+    if cover is not None:
+        under = [tucked(p, cover) if p.tucks else p for p in under]
+    return [*under, *upper, *shoes(figure), *bare_legs(figure)]
 
 
 def _finish(
@@ -141,7 +144,9 @@ def _oval(figure: Figure, points: NDArray[np.float64]) -> NDArray[np.float64]:
     p = Head(figure).units(points)
     d = (p - np.array([-0.02, 0.0, 0.45])) / np.array([0.42, 0.33, 0.62]) ** 2
     nose = 1.0 - 0.75 * np.exp(-((p[:, 1] / 0.055) ** 2) - ((p[:, 2] - 0.38) / 0.10) ** 2)
-    share = 1.3 * np.clip((p[:, 2] - 0.02) / 0.14, 0.0, 1.0) * np.clip((p[:, 0] + 0.05) / 0.12, 0.0, 1.0) * nose
+    share = (
+        1.3 * np.clip((p[:, 2] - 0.02) / 0.14, 0.0, 1.0) * np.clip((p[:, 0] + 0.05) / 0.12, 0.0, 1.0) * nose
+    )
     return _unit(d) * share[:, None]
 
 

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from .anatomy import ARM_FRAME, Figure, arm
 from .field import Field, Points, Values
 from .hair import hair_cover, hair_pieces
-from .head import Head, brow_line, eye_opening, lips, mouth, with_neck
+from .head import EARS_COVERED, Head, brow_line, ear, eye_opening, lips, mouth, with_neck
 from .pieces import Piece, hemmed, parted, parted_all, shade
 from .spec import Colour
 from .surface import Focus, Patch, clip, cull, half, polygonise, simplify
@@ -21,7 +21,7 @@ _LASH: Colour = (0.15, 0.10, 0.09)
 def head_pieces(f: Figure) -> list[Piece]:
     """Everything above the collar."""
     head = Head(f)
-    return [*_skin(head), *_eyes(head), *_brows(head), *_glasses(head), *hair_pieces(head)]
+    return [*_skin(head), *_ears(head), *_eyes(head), *_brows(head), *_glasses(head), *hair_pieces(head)]
 
 
 def limb_pieces(f: Figure) -> list[Piece]:
@@ -35,7 +35,7 @@ def limb_pieces(f: Figure) -> list[Piece]:
     patch = polygonise(local, (start, -0.065 * h, -0.06 * h), (reach, 0.065 * h, 0.06 * h), 0.0033 * h / 1.7)
     wrist = f.p.upper_arm + f.p.forearm
     focus = Focus((wrist + 0.55 * f.p.hand, 0.0, 0.0), 0.6 * f.p.hand, 2.2)
-    patch = simplify(patch, 720 if long_sleeves else 900, local, focus)
+    patch = simplify(patch, 600 if long_sleeves else 850, local, focus)
     patch = Patch(
         patch.vertices @ ARM_FRAME + origin,
         patch.faces[:, ::-1] if np.linalg.det(ARM_FRAME) < 0 else patch.faces,
@@ -50,12 +50,15 @@ def _skin(head: Head) -> list[Piece]:
     patch = polygonise(solid, low, high, 0.0150 * u)
     centre = o + np.array([0.30, 0.10, 0.34]) * u
     focus = Focus((float(centre[0]), float(centre[1]), float(centre[2])), 0.24 * u, 3.6)
-    patch = half(simplify(patch, 2500, solid, focus))
+    patch = half(simplify(patch, 2150, solid, focus))
     cover = hair_cover(head)
     if cover is not None:
         patch = cull(patch, cover, 0.012 * u)
     line = o[2] - 0.72 * u
-    patch = clip(patch, lambda p: line - p[:, 2])
+    side = 0.058 * f.p.height
+    patch = clip(
+        patch, lambda p: np.maximum(line - p[:, 2], np.where(p[:, 2] < o[2] - 0.1 * u, p[:, 1] - side, -1.0))
+    )
     opening = head.field(eye_opening(head))
     lash = head.field(_lash_outline(head))
     piece = Piece(clip(patch, opening, keep_outside=True), f.spec.skin, "skin", solid, rule="face")
@@ -64,6 +67,15 @@ def _skin(head: Head) -> list[Piece]:
     rest, lip = parted(rest, head.field(lips(head)), lip_colour(f), "skin")
     line_ = parted_all(lip, [head.field(cut) for cut in mouth(head)], (0.24, 0.08, 0.08), "skin")
     return [rest, rim, *line_]
+
+
+def _ears(head: Head) -> list[Piece]:
+    if head.figure.spec.hair in EARS_COVERED:
+        return []
+    solid, u = head.field(ear(head)), head.unit
+    low, high = head.metres(np.array([-0.2, 0.22, 0.28])), head.metres(np.array([0.12, 0.48, 0.66]))
+    patch = simplify(polygonise(solid, low, high, 0.0115 * u), 190, solid)
+    return [Piece(patch, head.figure.spec.skin, "skin", solid, rule="head", symmetry="side")]
 
 
 def _lash_outline(head: Head) -> Field:

@@ -55,8 +55,13 @@ def _cap(head: Head, thick: float, top: float = 0.0) -> Field:
     return lambda p: smooth_min(base(p) - thick, crown(p), 0.05)
 
 
-def hairline(head: Head, forehead: float, temple: float, nape: float, burn: float = 0.42) -> Field:
-    """Negative where hair grows: above a line over forehead, temple, around the ear and down to the nape."""
+def hairline(
+    head: Head, forehead: float, temple: float, nape: float, burn: float = 0.42, sweep: float = 0.0
+) -> Field:
+    """Negative where hair grows: above a line over forehead, temple, around the ear and down to the nape.
+
+    sweep: slant of the line over the forehead, for a fringe brushed to the side
+    """
     line = side_line(
         (
             (0.60, forehead + 0.02),
@@ -76,7 +81,8 @@ def hairline(head: Head, forehead: float, temple: float, nape: float, burn: floa
 
     def field(p: Points) -> Values:
         x = np.clip(p[:, 0], -0.6, 0.6)
-        return np.asarray(line(x)) - p[:, 2] + 0.0 * p[:, 1]
+        front = np.clip((p[:, 0] - 0.14) / 0.12, 0.0, 1.0)
+        return np.asarray(line(x)) + sweep * p[:, 1] * front - p[:, 2]
 
     return field
 
@@ -117,7 +123,7 @@ def _short(head: Head) -> list[Piece]:
     quiff = round_cone((0.20, 0.06, 0.93), (0.30, -0.13, 0.90), 0.085, 0.10)
     shape = grooves(union([(_both(_cap(head, 0.030, 0.05)), 0.0), (quiff, 0.10)]), 0.005, 11)
     cut = _both(hairline(head, 0.80, 0.70, 0.20))
-    return [_piece(head, shape, (-0.62, -0.5, -0.05), (0.62, 0.5, 1.2), cut, 1100, symmetric=False)]
+    return [_piece(head, shape, (-0.62, -0.5, -0.05), (0.62, 0.5, 1.2), cut, 1000, symmetric=False)]
 
 
 def _crop(head: Head) -> list[Piece]:
@@ -148,7 +154,10 @@ def _face_window(head: Head, top: float, width: float, sweep: float = 0.0) -> Fi
     """The opening of long hair around the face, a rounded arch through the front; ``sweep`` slants it."""
 
     def field(p: Points) -> Values:
-        p = p - np.stack([np.zeros(len(p)), np.zeros(len(p)), sweep * p[:, 1] * np.clip((p[:, 2] - 0.35) / 0.3, 0.0, 1.0)], 1)
+        p = p - np.stack(
+            [np.zeros(len(p)), np.zeros(len(p)), sweep * p[:, 1] * np.clip((p[:, 2] - 0.35) / 0.3, 0.0, 1.0)],
+            1,
+        )
         y, z = np.abs(p[:, 1]) / width, (p[:, 2] - 0.20) / (top - 0.20)
         arch = (y**2.6 + np.clip(z, 0.0, None) ** 2.6) ** (1 / 2.6) - 1.0
         return np.maximum(arch * width, 0.085 + 0.10 * np.clip(p[:, 2] - 0.45, 0.0, 1.0) - p[:, 0])
@@ -158,7 +167,17 @@ def _face_window(head: Head, top: float, width: float, sweep: float = 0.0) -> Fi
 
 def _bob(head: Head) -> list[Piece]:
     shape = carve(_both(_curtain(head, 0.07, 0.030)), _face_window(head, 0.745, 0.262, 0.30), 0.03)
-    return [_piece(head, grooves(shape, 0.0055, 9), (-0.66, -0.6, -0.02), (0.62, 0.6, 1.2), None, 1700, symmetric=False)]
+    return [
+        _piece(
+            head,
+            grooves(shape, 0.0055, 9),
+            (-0.66, -0.6, -0.02),
+            (0.62, 0.6, 1.2),
+            None,
+            1400,
+            symmetric=False,
+        )
+    ]
 
 
 def _long(head: Head) -> list[Piece]:
@@ -220,7 +239,7 @@ def _curly(head: Head) -> list[Piece]:
     return [
         _piece(
             head,
-            bumps(_both(shape), 0.024, 26.0),
+            bumps(_both(shape), 0.034, 17.0),
             (-0.72, -0.6, -0.1),
             (0.68, 0.6, 1.3),
             _both(cut),

@@ -93,7 +93,7 @@ def skull(head: Head) -> Field:
 
 
 def face(head: Head) -> Field:
-    """The whole head's skin: skull with sockets, lids, nose, lips and ears."""
+    """The whole head's skin: skull with sockets, lids, nose and lips; the ears are solids of their own."""
     soft, eld = head.soft, head.figure.spec.eld
     ex, ey, ez = head.eye
     solid = carve(skull(head), ellipsoid((ex + 0.16, ey, ez + 0.005), (0.085, 0.125, 0.072)), 0.07)
@@ -111,9 +111,7 @@ def face(head: Head) -> Field:
     groove = round_cone((0.41, 0.0, m), (0.33, half * 1.02, m + 0.002), 0.012, 0.008)
     nostril = ellipsoid((0.375 + 0.02 * nose, 0.026 * nose, 0.292 + 0.012 * soft), (0.026, 0.013, 0.012))
     whole = carve(carve(whole, groove, 0.02), nostril, 0.012)
-    if head.figure.spec.hair in EARS_COVERED:
-        return whole
-    return union([(whole, 0.0), (ear(head), 0.03)])
+    return whole
 
 
 def ear(head: Head) -> Field:
@@ -121,8 +119,8 @@ def ear(head: Head) -> Field:
     size = 1.0 + 0.10 * head.figure.spec.eld
     lean = np.array([[0.94, 0.30, 0.18], [-0.33, 0.93, 0.12], [-0.13, -0.17, 0.98]])
     lean = np.linalg.qr(lean.T)[0].T * np.sign(np.diag(np.linalg.qr(lean.T)[1]))[:, None]
-    c = np.array([-0.030, 0.330, 0.465])
-    shell = ellipsoid(c, (0.062 * size, 0.024, 0.102 * size), lean)
+    c = np.array([-0.030, 0.332, 0.465])
+    shell = ellipsoid(c, (0.066 * size, 0.027, 0.105 * size), lean)
     lobe = ellipsoid(c + np.array([0.014, -0.014, -0.070]), (0.028, 0.018, 0.030))
     bowl = ellipsoid(c + np.array([0.018, 0.026, 0.012]), (0.036, 0.020, 0.062), lean)
     return carve(union([(shell, 0.0), (lobe, 0.03)]), bowl, 0.012)
@@ -143,7 +141,10 @@ def eye_opening(head: Head, grow: float = 0.0, lift: float = 0.0) -> Field:
         a = (np.abs(p[:, 1]) - ey) / wide
         b = p[:, 2] - ez - 0.010 * a
         arch = 1.0 - np.abs(a + 0.12) ** 2.3
-        d = np.maximum(b - (up + lift * np.clip(0.45 + 0.75 * a, 0.15, 1.0)) * arch, -b - down * (1.0 - np.abs(a - 0.05) ** 2.2))
+        d = np.maximum(
+            b - (up + lift * np.clip(0.45 + 0.75 * a, 0.15, 1.0)) * arch,
+            -b - down * (1.0 - np.abs(a - 0.05) ** 2.2),
+        )
         return np.maximum(d, ex + 0.03 - p[:, 0])
 
     return field

@@ -6,9 +6,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from .anatomy import ARM_FRAME, LEG_FRAME, TORSO_FRAME, Figure, arm_loft, leg_loft, shoe, trunk
+from .anatomy import ARM_FRAME, LEG_FRAME, TORSO_FRAME, Figure, arm_loft, leg_loft, limb, shoe, trunk
 from .field import Field, Knot, Points, Values, loft, smooth_min, union
-from .pieces import Piece, hemmed, parted, shade
+from .pieces import Piece, hemmed, parted, parted_all, shade
 from .spec import Colour
 from .surface import Patch, clip, half, polygonise, simplify
 
@@ -37,8 +37,7 @@ def along_arm(f: Figure, end: float) -> Field:
     def field(p: Points) -> Values:
         d = p - origin
         local = d @ ARM_FRAME.T
-        h = f.p.height
-        on_arm = (np.abs(local[:, 1]) < 0.10 * h) & (local[:, 2] > -0.066 * h)
+        on_arm = np.hypot(local[:, 1], local[:, 2]) < (0.040 * limb(f) + 0.014) * f.p.height
         return np.where(on_arm, local[:, 0] - end, -0.1)
 
     return field
@@ -66,7 +65,7 @@ def neckline(f: Figure, depth: float, air: float = 0.0, lift: float = 0.0, sharp
     def field(p: Points) -> Values:
         front = np.clip((p[:, 0] - x + 0.012 * h) / (0.040 * h), 0.0, 1.0)
         reach = 0.010 * h + (depth - 0.010 * h) * front * front * (3 - 2 * front)
-        open_up = radius + 0.9 * np.clip(p[:, 2] - z, 0.0, 0.03 * h)
+        open_up = radius + 0.35 * np.clip(p[:, 2] - z, 0.0, 0.03 * h)
         across = np.hypot(p[:, 1], np.clip(x - p[:, 0], 0.0, 1.0) * 0.7) / open_up
         down = np.clip(z + 0.012 * h * (1 - front) - p[:, 2], 0.0, None) / reach
         return (1.0 - (across**sharp + down**sharp) ** (1.0 / sharp)) * radius
@@ -84,9 +83,17 @@ def _box(
 
 def top_solid(f: Figure, grow: float, ease: float, sleeves: Field) -> Field:
     """Trunk and left sleeve of a garment."""
-    h = f.p.height
+    h, grow = f.p.height, max(grow, 0.010)
     body, leg = trunk(f, grow, ease), leg_loft(f, grow)
-    return lambda p: smooth_min(smooth_min(body(p), leg(p), 0.03 * h), sleeves(p), 0.026 * h)
+    low, high = f.level(0.98), f.level(1.12)
+
+    def field(p: Points) -> Values:
+        hug = np.clip((p[:, 2] - low) / (high - low), 0.0, 1.0) * (
+            grow - 0.007
+        )  # cloth lies close at the neck
+        return smooth_min(smooth_min(body(p), leg(p), 0.03 * h), sleeves(p), 0.026 * h) + hug
+
+    return field
 
 
 def _surface(f: Figure, solid: Field, low_z: float, high_z: float, arm: bool, faces: int) -> Patch:
@@ -115,13 +122,15 @@ def _tshirt(f: Figure) -> list[Piece]:
     patch = _surface(f, solid, hem - 0.04 * h, f.level(1.35), True, 900)
     patch = clip(
         patch,
-        both(both(above(hem), along_arm(f, end)), neckline(f, h * f.mix(0.030, 0.050), h * f.mix(0.004, 0.012))),
+        both(
+            both(above(hem), along_arm(f, end)), neckline(f, h * f.mix(0.030, 0.050), h * f.mix(0.004, 0.012))
+        ),
     )
     return [hemmed(Piece(patch, f.spec.top_color, "top", solid, material="cloth"), 0.010 * h)]
 
 
 def _long_sleeved(
-    f: Figure, grow: float, ease: float, hem: float, collar: Field, wrist: float, faces: int = 1150
+    f: Figure, grow: float, ease: float, hem: float, collar: Field, wrist: float, faces: int = 1000
 ) -> Piece:
     h = f.p.height
     end = (f.p.upper_arm + f.p.forearm) * wrist
@@ -159,8 +168,11 @@ def _shirt(f: Figure) -> list[Piece]:
     return [hemmed(q, 0.009 * h) for q in [*placket, *pieces[1:]]] + _collar(f, piece.colour)
 
 
-def _collar(f: Figure, colour: Colour) -> list[Piece]:
-    """A turned-down shirt collar: a sloping band around the neck with points in front."""
+def _collar(f: Figure, colour: Colour, drop: float = 1.0) -> list[Piece]:
+    """A turned-down shirt collar: a sloping band around the neck with points in front.
+
+    drop: how far it comes down, less under a jacket
+    """
     h = f.p.height
     z, x = f.level(1.135), f.joint("neck")[0] + 0.002 * h
     r = h * f.mix(0.040, 0.0335) * (1.0 + 0.35 * f.heavy)
@@ -168,9 +180,9 @@ def _collar(f: Figure, colour: Colour) -> list[Piece]:
         (x, 0.0, z),
         TORSO_FRAME,
         [
-            Knot(-0.050 * h, 1.95 * r, 1.55 * r, 1.75 * r),
-            Knot(-0.020 * h, 1.42 * r, 1.28 * r, 1.36 * r),
-            Knot(0.006 * h, 1.08 * r, 1.08 * r, 1.08 * r, v=-0.002 * h),
+            Knot(-0.050 * h, 2.30 * r, 1.75 * r, 2.05 * r),
+            Knot(-0.020 * h, 1.62 * r, 1.40 * r, 1.52 * r),
+            Knot(0.006 * h, 1.16 * r, 1.14 * r, 1.14 * r, v=-0.002 * h),
             Knot(0.034 * h, 0.96 * r, 1.02 * r, 0.98 * r, v=-0.004 * h),
         ],
     )
@@ -211,7 +223,7 @@ def _blazer(f: Figure, hem_level: float = -0.22, skirt: float = 0.0) -> list[Pie
     if skirt > 0:
         body, tail = solid, _tail(f, hem)
         solid = lambda p: smooth_min(body(p), tail(p), 0.05 * h)  # noqa: E731
-    patch = _surface(f, solid, hem - 0.04 * h, f.level(1.35), True, 1250)
+    patch = _surface(f, solid, hem - 0.04 * h, f.level(1.35), True, 1050)
     patch = clip(patch, both(both(above(hem, 0.05), along_arm(f, end)), neckline(f, 0.030 * h, 0.004 * h)))
     button = f.level(0.36)
     opening, lapel = _front(f, button, 0.0), _front(f, button, 0.042 * h)
@@ -223,7 +235,7 @@ def _blazer(f: Figure, hem_level: float = -0.22, skirt: float = 0.0) -> list[Pie
         "trim",
     )
     shown = [hemmed(_shirt_front(f), 0.009 * h)]
-    collar = [replace(q, part="shirt") for q in _collar(f, f.spec.shirt_color)]
+    collar = [replace(q, part="shirt") for q in _collar(f, f.spec.shirt_color, 0.35)]
     return [hemmed(q, 0.011 * h) for q in pieces] + shown + collar
 
 
@@ -234,8 +246,8 @@ def _shirt_front(f: Figure) -> Piece:
     solid = trunk(f, 0.0066 * h, 0.10)
     patch = polygonise(solid, (-0.1 * h, -0.03, low), (0.2 * h, 0.10 * h, high), 0.0075 * h / 1.7)
     patch = half(simplify(patch, 420, solid))
-    cut = neckline(f, 0.040 * h, -0.004 * h, 0.012 * h)
-    patch = clip(patch, lambda p: np.maximum(np.maximum(cut(p), p[:, 1] - 0.085 * h), -0.035 * h - p[:, 0]))
+    cut, shown = neckline(f, 0.040 * h, -0.004 * h, 0.012 * h), _front(f, f.level(0.36), 0.016 * h)
+    patch = clip(patch, both(cut, shown))
     return Piece(patch, f.spec.shirt_color, "shirt", solid, material="cloth")
 
 
@@ -287,14 +299,15 @@ def _coat(f: Figure) -> list[Piece]:
 def _dress(f: Figure) -> list[Piece]:
     h = f.p.height
     hem = f.p.knee + 0.012 * h
-    end = 0.42 * f.p.upper_arm
+    end = 0.55 * f.p.upper_arm
     body, tail = top_solid(f, 0.0060 * h, 0.0, sleeve(f, 0.007 * h, end, 0.007 * h)), _tail(f, hem, 0.30)
     solid = lambda p: smooth_min(body(p), tail(p), 0.02 * h)  # noqa: E731
     patch = _surface(f, solid, hem - 0.04 * h, f.level(1.35), True, 1200)
     patch = clip(patch, both(both(above(hem), along_arm(f, end)), neckline(f, 0.052 * h, 0.014 * h)))
     piece = Piece(patch, f.spec.top_color, "top", solid, rule="skirt", material="cloth")
     waist = f.level(0.38)
-    belt = parted(piece, lambda p: np.abs(p[:, 2] - waist) - 0.011 * h, shade(f.spec.top_color, 0.72), "belt")
+    band: list[Field] = [lambda p: p[:, 2] - waist - 0.011 * h, lambda p: waist - 0.011 * h - p[:, 2]]
+    belt = parted_all(piece, band, shade(f.spec.top_color, 0.72), "belt")
     return [hemmed(q, 0.010 * h) for q in belt]
 
 

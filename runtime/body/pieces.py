@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from .field import Field
+from .field import Field, gradient
 from .spec import Colour
 from .surface import Patch, compact, mirror, rim, split
 
@@ -33,6 +33,15 @@ class Piece:
     rule: str = "body"
     symmetry: str = "half"
     material: str = "plain"
+
+    @property
+    def tucks(self) -> bool:
+        """Whether it gives way under a top: skin of head, arms and hands, and the bottom."""
+        return (
+            self.solid is not None
+            and self.part in ("skin", "bottom")
+            and self.rule in ("face", "body", "legs")
+        )
 
     def looking(self, colour: Colour, part: str) -> Piece:
         return replace(self, colour=colour, part=part)
@@ -77,6 +86,16 @@ def hemmed(piece: Piece, depth: float) -> Piece:
         np.concatenate([piece.patch.faces, strip.faces + n]),
     )
     return replace(piece, patch=joined)
+
+
+def tucked(piece: Piece, cover: Field) -> Piece:
+    """The piece drawn back a little where it lies under ``cover``, so that it stays under it when posed."""
+    assert piece.solid is not None
+    vertices = piece.patch.vertices
+    push = 0.55 * np.clip(-cover(vertices) - 0.003, 0.0, 0.012)
+    slope = gradient(piece.solid, vertices)
+    slope /= np.maximum(np.linalg.norm(slope, axis=1, keepdims=True), 1e-9)
+    return replace(piece, patch=Patch(vertices - slope * push[:, None], piece.patch.faces))
 
 
 def other_side(piece: Piece) -> Piece:

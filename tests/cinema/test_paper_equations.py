@@ -10,13 +10,12 @@ import math
 
 import numpy as np
 import pytest
+from filmset import shot, skeleton, standing, story, world
 from numpy.typing import NDArray
 
 from vdsl.lang.ir import ANGLES, MOVEMENTS
 from vdsl.propose.cameras import Filming, propose_cameras
 from vdsl.propose.types import CameraProposal
-
-from .scenes import shot, skeleton, standing, story, world
 
 HEIGHT = 1.73
 
@@ -26,9 +25,7 @@ def w(lam: float, t: float) -> float:
 
 
 def sphere(r: float, theta: float, phi: float) -> NDArray[np.float64]:
-    return r * np.array(
-        [math.cos(phi) * math.sin(theta), math.sin(phi) * math.sin(theta), math.cos(theta)]
-    )
+    return r * np.array([math.cos(phi) * math.sin(theta), math.sin(phi) * math.sin(theta), math.cos(theta)])
 
 
 def recomputed(
@@ -50,9 +47,7 @@ def recomputed(
         return (1 - f) * path[i] + f * path[i + 1]
 
     def ahead(pitch: float, yaw: float) -> NDArray[np.float64]:
-        return np.array(
-            [math.cos(pitch) * math.cos(yaw), math.cos(pitch) * math.sin(yaw), math.sin(pitch)]
-        )
+        return np.array([math.cos(pitch) * math.cos(yaw), math.cos(pitch) * math.sin(yaw), math.sin(pitch)])
 
     framed = off_floor(key + up + sphere(v["r"], v["theta"], v["phi"]))
     level = key + up - framed
@@ -94,7 +89,9 @@ def recomputed(
     return np.array(positions), rotation, np.array(focals)
 
 
-def takes(movement: str, angle: str, scale: str, seed: int) -> tuple[tuple[CameraProposal, ...], NDArray[np.float64]]:
+def takes(
+    movement: str, angle: str, scale: str, seed: int
+) -> tuple[tuple[CameraProposal, ...], NDArray[np.float64]]:
     rng = np.random.default_rng([seed, len(movement)])
     frames = int(rng.integers(24, 60))
     t = np.linspace(0, 1, frames)[:, None]
@@ -125,7 +122,11 @@ def test_tracks_equal_the_equations(movement: str, angle: str) -> None:
 
 @pytest.mark.parametrize(("scale", "share"), [("close-up", 0.2), ("medium", 0.5), ("full", 1.0)])
 def test_distances_and_angles_are_as_printed(scale: str, share: float) -> None:
-    for angle, theta in (("eye-level", math.pi / 2), ("high-angle", 2 * math.pi / 5), ("low-angle", 4 * math.pi / 5)):
+    for angle, theta in (
+        ("eye-level", math.pi / 2),
+        ("high-angle", 2 * math.pi / 5),
+        ("low-angle", 4 * math.pi / 5),
+    ):
         cameras, _ = takes("static", angle, scale, 0)
         assert cameras
         for camera in cameras:

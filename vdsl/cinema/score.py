@@ -9,10 +9,10 @@ from numpy.typing import NDArray
 
 #: What counts, and how much; the weights sum to one.
 WEIGHTS = {
-    "visibility": 0.16,
-    "in_frame": 0.16,
+    "visibility": 0.14,
+    "in_frame": 0.14,
     "face": 0.14,
-    "interest": 0.10,
+    "interest": 0.14,
     "size": 0.08,
     "headroom": 0.08,
     "lead_room": 0.06,

@@ -154,7 +154,7 @@ def _perform(
 
 
 def _interest(errands: Mapping[str, Errand], motion: SceneMotion) -> tuple[NDArray[np.float64], ...]:
-    """Paths of what the line is about besides whoever acts first: its targets, and everybody else who acts."""
+    """Paths of what the line is about besides whoever acts first: its targets, and all others who act."""
     out: list[NDArray[np.float64]] = []
     names = dict.fromkeys(list(errands)[1:])
     for item in list(errands.values())[:1]:

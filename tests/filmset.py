@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
+
 from runtime.body.proportions import make_skeleton
 from runtime.body.skeleton import JOINTS, Skeleton, forward_kinematics
 from runtime.body.spec import BodySpec
 from runtime.mesh import empty
 from runtime.world import Light, Solids, Spot, Wall, World, WorldObject
-
 from vdsl.lang.ir import Shot, Target
 from vdsl.lang.source import Source, Span
 from vdsl.propose.types import Performance, StoryProposal
@@ -83,7 +83,9 @@ def walking_story(body: Skeleton, frames: int = 72, metres: float = 3.0) -> Stor
     return story({"anna": standing(body, path, 0.2 * t)})
 
 
-def shot(movement: str = "static", scale: str = "medium", angle: str = "eye-level", **changes: object) -> Shot:
+def shot(
+    movement: str = "static", scale: str = "medium", angle: str = "eye-level", **changes: object
+) -> Shot:
     given: dict[str, object] = {
         "id": "s1",
         "line": 1,

@@ -1,0 +1,133 @@
+"""``rig cinema``: solved landmarks, level horizons, lenses in range, smooth tracks; over random bodies."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from filmset import shot, skeleton, standing, still_story, story, walking_story, world
+
+from vdsl.cinema.classify import achieved_angle, achieved_movement, achieved_size
+from vdsl.cinema.moves import FLOOR_CLEARANCE
+from vdsl.cinema.sizes import SIZES
+from vdsl.cinema.subject import Subject, person
+from vdsl.cinema.track import camera_axes, project
+from vdsl.lang.ir import ANGLES, MOVEMENTS
+from vdsl.propose.cameras import Filming, propose_cameras
+from vdsl.propose.types import CameraProposal, StoryProposal
+
+
+def subject_of(acted: StoryProposal, height: float) -> Subject:
+    p = acted.performances["anna"]
+    return person("anna", skeleton(height), p.world_from_joint, p.position, p.heading)
+
+
+def filmed(acted: StoryProposal, height: float, **said: object) -> tuple[CameraProposal, ...]:
+    filming = Filming(world(), {"anna": skeleton(height)}, 24.0, 3)
+    return propose_cameras(shot(**said), [acted], filming).cameras  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("scale", ["close-up", "medium", "full", "wide"])
+@pytest.mark.parametrize("angle", ANGLES)
+def test_landmarks_sit_on_the_frame_s_lines(scale: str, angle: str) -> None:
+    rng = np.random.default_rng(len(scale) + len(angle))
+    for _ in range(4):
+        height, lean = float(rng.uniform(1.1, 1.95)), float(rng.uniform(0.0, 0.5))
+        path = np.tile((*rng.uniform(-3, 3, 2), 0.0), (12, 1))
+        body = skeleton(height)
+        acted = story({"anna": standing(body, path, np.full(12, rng.uniform(-3, 3)), lean)})
+        marks, size = subject_of(acted, height).landmarks, SIZES[scale]
+        cameras = filmed(acted, height, movement="static", scale=scale, angle=angle)
+        assert len(cameras) == 40
+        for c in cameras:
+            axes = camera_axes(c.track.rotation[0])
+            points = np.stack([marks[size.upper][0], marks[size.lower][0]])
+            xy, _ = project(points, c.track.position[0], axes, c.track.focal[0], c.track.sensor)
+            assert xy[0, 1] == pytest.approx(size.top, abs=0.01)
+            assert xy[1, 1] == pytest.approx(size.bottom, abs=0.01)
+            assert 0.3 < xy[0, 0] < 0.7
+            # straight up in the world is straight up in the picture
+            assert abs(axes[0, 2]) < 1e-9
+
+
+@pytest.mark.parametrize("movement", MOVEMENTS)
+def test_tracks_are_smooth_level_and_within_the_lens(movement: str) -> None:
+    cameras = filmed(walking_story(skeleton()), 1.7, movement=movement, scale="medium", lens=(35.0, 70.0))
+    assert cameras
+    for c in cameras:
+        assert c.track.focal.min() >= 30.0 - 1e-9
+        assert c.track.focal.max() <= 80.0 + 1e-9
+        assert 35.0 - 1e-9 <= c.track.focal[0] <= 70.0 + 1e-9
+        assert np.abs(c.track.rotation[:, 0]).max() == 0.0
+        assert c.track.position[:, 2].min() >= FLOOR_CLEARANCE - 1e-9
+        step = np.linalg.norm(np.diff(c.track.position, axis=0), axis=1)
+        change = np.linalg.norm(np.diff(c.track.position, n=2, axis=0), axis=1)
+        assert step.max() < 0.25
+        assert change.max() < 0.04
+        assert np.abs(np.diff(c.track.rotation[:, 2])).max() < 0.15
+
+
+@pytest.mark.parametrize("movement", [m for m in MOVEMENTS if m != "follow"])
+def test_a_take_moves_as_it_is_called(movement: str) -> None:
+    acted = still_story(skeleton())
+    for c in filmed(acted, 1.7, movement=movement):
+        found = achieved_movement(c.track, acted.performances["anna"].position)
+        assert found == movement.split("-")[0]
+
+
+@pytest.mark.parametrize(
+    ("movement", "sign"),
+    [("pan-left", 1), ("pan-right", -1), ("tilt-up", 1), ("tilt-down", -1)],
+)
+def test_turns_go_the_named_way(movement: str, sign: int) -> None:
+    k = 2 if movement.startswith("pan") else 1
+    for c in filmed(still_story(skeleton()), 1.7, movement=movement):
+        turned = sign * np.degrees(c.track.rotation[-1, k] - c.track.rotation[0, k])
+        assert 30.0 - 1e-6 <= turned <= 60.0 + 1e-6
+
+
+@pytest.mark.parametrize(
+    ("movement", "sign"), [("dolly-left", -1), ("dolly-right", 1), ("arc-left", -1), ("arc-right", 1)]
+)
+def test_sideways_moves_go_the_named_way(movement: str, sign: int) -> None:
+    for c in filmed(still_story(skeleton()), 1.7, movement=movement):
+        right = camera_axes(c.track.rotation[0])[0]
+        assert sign * float((c.track.position[1:] - c.track.position[:1])[5] @ right) > 0
+
+
+def test_pedestals_rise_and_sink() -> None:
+    for movement, sign in (("pedestal-up", 1), ("pedestal-down", -1)):
+        for c in filmed(still_story(skeleton()), 1.7, movement=movement):
+            assert sign * (c.track.position[-1, 2] - c.track.position[0, 2]) > 0.1
+            assert np.ptp(c.track.position[:, :2], axis=0).max() < 1e-9
+
+
+@pytest.mark.parametrize("scale", ["close-up", "medium", "full", "wide"])
+def test_achieved_size_and_angle_are_what_was_asked(scale: str) -> None:
+    acted = still_story(skeleton())
+    subject = subject_of(acted, 1.7)
+    for angle in ANGLES:
+        for c in filmed(acted, 1.7, scale=scale, angle=angle):
+            assert achieved_size(c.track, subject, 0) == scale
+            if "lifted" not in c.params:
+                assert achieved_angle(np.radians(c.measures["elevation"])) == angle
+
+
+def test_low_cameras_say_that_they_were_lifted() -> None:
+    cameras = filmed(still_story(skeleton()), 1.7, scale="wide", angle="low-angle", lens=(80.0, 80.0))
+    assert cameras
+    for c in cameras:
+        assert float(c.params["lifted"]) > 0.05
+        assert c.track.position[0, 2] == pytest.approx(FLOOR_CLEARANCE, abs=0.01)
+
+
+def test_a_follow_keeps_its_distance() -> None:
+    acted = walking_story(skeleton(), metres=4.0)
+    cameras = filmed(acted, 1.7, movement="follow", scale="full", ease=(1.0,))
+    moved = np.array([c.track.position[-1] - c.track.position[0] for c in cameras])
+    walked = acted.performances["anna"].position
+    np.testing.assert_allclose(
+        moved, np.tile(walked[-1] - walked[0], (len(moved), 1)), atol=0.4
+    )  # starts softly
+    for c in cameras:
+        reach = np.linalg.norm(c.track.position - c.track.look_at, axis=1)
+        np.testing.assert_allclose(reach, reach[0], atol=1e-6)

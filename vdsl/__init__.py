@@ -1,0 +1,63 @@
+"""VDS: a text language and compiler for moving storyboards.
+
+``vdsl.parse`` reads text, ``vdsl.check`` checks a file, ``vdsl.compile`` makes the whole film. Every
+stage between is a function of its own: see ``vdsl.lang``, ``vdsl.stage``, ``vdsl.propose``,
+``vdsl.pipeline`` and ``vdsl.emit``. Importing this package loads nothing heavy.
+"""
+
+from __future__ import annotations
+
+from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from .lang import Report, Settings, Source, Storyboard, parse
+from .pipeline.script import Checked, ScriptError, load_storyboard
+
+if TYPE_CHECKING:
+    from .pipeline.compile import Result
+
+try:
+    __version__ = version("vdsl")
+except PackageNotFoundError:  # run from a checkout that was never installed
+    __version__ = "0+unknown"
+
+
+def check(path: str | Path, settings: Settings | None = None) -> Checked:
+    """Read and check a script. Raises :class:`ScriptError` with every mistake, or OSError."""
+    return load_storyboard(Path(path), settings)
+
+
+def compile(
+    path: str | Path,
+    out: str | Path | None = None,
+    settings: Settings | None = None,
+    *,
+    device: str = "auto",
+    rank: str = "discriminator",
+    weights: Path | None = None,
+    burn_in: bool = False,
+) -> Result:
+    """Compile a script into a folder of videos (default ``build/<name>``).
+
+    settings: what wins over the script's header lines; device: auto, cpu, cuda or vulkan; rank:
+    discriminator or geometry. Raises :class:`ScriptError`, OSError or :class:`ranker.RankerError`.
+    """
+    # Only now: parsing and checking must not wait for numpy, torch and taichi.
+    from .pipeline.compile import compile_file
+    from .pipeline.options import Options
+
+    return compile_file(path, out, Options(settings or Settings(), device, rank, weights, burn_in))
+
+
+__all__ = [
+    "Checked",
+    "Report",
+    "ScriptError",
+    "Settings",
+    "Source",
+    "Storyboard",
+    "check",
+    "compile",
+    "parse",
+]

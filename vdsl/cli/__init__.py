@@ -8,7 +8,9 @@ from __future__ import annotations
 
 import typer
 
+from .bench import bench
 from .check import check
+from .compile import compile_command
 from .explain import explain
 
 app = typer.Typer(
@@ -18,8 +20,10 @@ app = typer.Typer(
     add_completion=False,
     pretty_exceptions_enable=False,
 )
+app.command("compile")(compile_command)
 app.command()(check)
 app.command()(explain)
+app.command()(bench)
 
 
 def main() -> None:

@@ -41,12 +41,16 @@ class StageClock:
         self.watcher.begin(stage, total, unit)
 
     @contextmanager
-    def spent(self, stage: str, amount: int) -> Iterator[None]:
-        """Counts the block's time and, when it ends well, ``amount`` units as done."""
+    def spent(self, stage: str, amount: int, quiet: bool = False) -> Iterator[None]:
+        """Counts the block's time and, when it ends well, ``amount`` units as done.
+
+        quiet: a stage too short for the watcher to be told of
+        """
         start = perf_counter()
         try:
             yield
         finally:
             self.seconds[stage] = self.seconds.get(stage, 0.0) + perf_counter() - start
         self.units[stage] = self.units.get(stage, 0) + amount
-        self.watcher.advance(stage, amount)
+        if not quiet:
+            self.watcher.advance(stage, amount)

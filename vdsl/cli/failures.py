@@ -1,0 +1,48 @@
+"""Everything that can go wrong while a command works, as an exit code and one line a person can act on."""
+
+from __future__ import annotations
+
+import errno
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import typer
+
+from ranker.errors import RankerError
+
+from ..pipeline.script import ScriptError
+from .check import MACHINE, WRONG, stop
+from .show import print_report
+
+INTERRUPTED = 130
+
+
+@contextmanager
+def failures_told(file: Path, format: str = "text") -> Iterator[None]:
+    """Turn what the block raises into a message and an exit code (1, 3 or 130)."""
+    try:
+        yield
+    except ScriptError as error:
+        print_report(error.report, format, str(file))
+        raise typer.Exit(WRONG) from None
+    except KeyboardInterrupt:
+        stop("interrupted; the last good build is as it was", INTERRUPTED)
+    except RankerError as error:
+        stop(str(error), MACHINE)
+    except MemoryError:
+        stop("not enough memory; try fewer --proposals or a smaller --size", MACHINE)
+    except OSError as error:
+        stop(_about(error), MACHINE)
+
+
+def _about(error: OSError) -> str:
+    if error.errno == errno.ENOSPC:
+        return f"the disk is full{_of(error)}; the last good build is as it was"
+    if error.errno and error.strerror and type(error) is not OSError and error.filename:
+        return f"{error.strerror}: {error.filename}"
+    return str(error) or type(error).__name__
+
+
+def _of(error: OSError) -> str:
+    return f" ({error.filename})" if error.filename else ""

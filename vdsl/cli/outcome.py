@@ -1,0 +1,43 @@
+"""What ``vdsc compile`` says at the end: what was made, how long it took, where to look."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from rich.console import Console
+from rich.table import Table
+
+from ..emit.words import camera_words
+from ..pipeline.compile import Result
+from .show import as_json, print_report, printable
+
+
+def print_outcome(result: Result, format: str, file: Path) -> None:
+    """Warnings, a line a shot, and the files to open. As JSON: the warnings alone."""
+    if format == "json":
+        print(as_json(result.warnings, str(file)))
+        return
+    print_report(result.warnings)
+    console = Console()
+    if console.is_terminal:
+        console.print(_table(result))
+    shots, frames = result.build.shots, sum(s.frames for s in result.build.shots)
+    num, den = result.build.storyboard.fps
+    takes = sum(len(s.takes) for s in shots)
+    made = f"{len(shots)} shots, {takes} takes, {frames * den / num:.1f} s of film in {result.report.seconds:.0f} s"
+    console.print(printable(made), highlight=False)
+    for name in ("index.html", "animatic.mp4", "sheet.png"):
+        if (result.folder / name).exists():
+            console.print(printable(str(result.folder / name)), highlight=False, soft_wrap=True)
+
+
+def _table(result: Result) -> Table:
+    table = Table(box=None, pad_edge=False)
+    for title, justify in (("shot", "left"), ("camera", "left"), ("proposals", "right"), ("best", "right")):
+        table.add_column(title, justify=justify)  # type: ignore[arg-type]
+    for built in result.build.shots:
+        best = f"{built.takes[0].score:.2f}" if built.takes else "–"
+        table.add_row(printable(built.shot.id), camera_words(built) if built.takes else "none", str(built.proposals), best)
+    return table
+
+

@@ -1,0 +1,59 @@
+"""Who puts the proposals of a shot in order."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..cinema.score import geometry_score
+from ..propose.types import CameraProposal
+
+
+class Judge(Protocol):
+    """Scores proposals; higher is better.
+
+    name: as the build's documents call it; looks: whether it needs to see frames
+    """
+
+    name: str
+    looks: bool
+
+    def scores(
+        self, cameras: tuple[CameraProposal, ...], frames: NDArray[np.uint8] | None
+    ) -> NDArray[np.float64]:
+        """Scores [P] of P proposals; frames are uint8 [P, 8, 224, 224, 3] where the judge looks."""
+        ...
+
+
+class GeometryJudge:
+    """Measured geometry alone (``--rank geometry``): nothing is drawn to choose."""
+
+    name = "geometry"
+    looks = False
+
+    def scores(self, cameras: tuple[CameraProposal, ...], frames: NDArray[np.uint8] | None) -> NDArray[np.float64]:
+        return np.array([geometry_score(c.measures) for c in cameras])
+
+
+class DiscriminatorJudge:
+    """The shot ranking discriminator: p_b of the paper's section 3.3.
+
+    Raises :class:`ranker.RankerError` if the weights are missing or unreadable.
+    """
+
+    name = "ranker"
+    looks = True
+
+    def __init__(self, weights: Path | None, device: str) -> None:
+        # Only now: a geometry run must not pay for torch.
+        from ranker.infer import Ranker
+
+        self._ranker = Ranker.load(weights, device="cuda" if device == "cuda" else "cpu")
+
+    def scores(self, cameras: tuple[CameraProposal, ...], frames: NDArray[np.uint8] | None) -> NDArray[np.float64]:
+        if frames is None:
+            raise ValueError("the discriminator judges by frames")
+        return self._ranker.score(frames).professional.astype(np.float64)

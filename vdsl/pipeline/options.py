@@ -1,0 +1,33 @@
+"""What the command line, or a caller of the Python API, may ask of a compilation."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from ..lang import Settings
+
+JUDGES = ("discriminator", "geometry")
+DEVICES = ("auto", "cpu", "cuda", "vulkan")
+
+
+@dataclass(frozen=True)
+class Options:
+    """Settings of one run.
+
+    settings: what wins over the script's header lines
+    device: where pictures are drawn; rank: who judges; weights: the discriminator's, None for the shipped
+    burn_in: write shot, take, timecode, frame, lens and movement on every frame
+    """
+
+    settings: Settings = field(default_factory=Settings)
+    device: str = "auto"
+    rank: str = "discriminator"
+    weights: Path | None = None
+    burn_in: bool = False
+
+    def __post_init__(self) -> None:
+        if self.rank not in JUDGES:
+            raise ValueError(f"rank: expected one of {', '.join(JUDGES)}, got {self.rank!r}")
+        if self.device not in DEVICES:
+            raise ValueError(f"device: expected one of {', '.join(DEVICES)}, got {self.device!r}")

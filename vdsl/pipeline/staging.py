@@ -1,0 +1,48 @@
+"""Builds every scene of a storyboard: its world, its dressed cast, and both as one drawable scene."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from runtime.body.build import Body, build_body
+from runtime.body.spec import BodySpec
+from runtime.world import World
+
+from ..lang.definitions.cast import CastDef
+from ..lang.definitions.set import SetDef
+from ..lang.ir import Character, Scene, StoryLine
+from ..library import Catalog
+from ..stage.assemble import StagedScene, assemble
+from ..stage.cast import body_spec
+from ..stage.world import build_world
+
+
+class Stagehand:
+    """Builds worlds and bodies, each once however many scenes use them."""
+
+    def __init__(self, catalog: Catalog) -> None:
+        self._catalog = catalog
+        self._worlds: dict[tuple[str, str, tuple[str, ...]], World] = {}
+        self._bodies: dict[BodySpec, Body] = {}
+
+    def stage(self, scene: Scene, characters: Sequence[Character], lines: Sequence[StoryLine]) -> StagedScene:
+        """The scene with those of the cast who take part in it: placed there, or acting in one of its lines."""
+        present = {p.character for p in scene.placements} | {b.character for line in lines for b in line.beats}
+        present |= {t.path[0] for line in lines for b in line.beats for t in (b.target, b.second) if t and t.kind == "character"}
+        return assemble(self.world(scene), {c.name: self.body(c) for c in characters if c.name in present})
+
+    def world(self, scene: Scene) -> World:
+        key = (scene.set, scene.time, scene.room)
+        if key not in self._worlds:
+            definition = self._catalog.get("set", scene.set)
+            assert isinstance(definition, SetDef), scene.set
+            self._worlds[key] = build_world(definition, self._catalog, scene.time, scene.room)
+        return self._worlds[key]
+
+    def body(self, character: Character) -> Body:
+        definition = self._catalog.get("cast", character.cast)
+        assert isinstance(definition, CastDef), character.cast
+        spec = body_spec(definition, character.arguments)
+        if spec not in self._bodies:
+            self._bodies[spec] = build_body(spec)
+        return self._bodies[spec]

@@ -11,7 +11,7 @@ from runtime.body.skeleton import JOINT, Skeleton
 
 from .curves import plateau, ramp
 from .figure import Figure
-from .rotations import rot_x, rot_z, wrap
+from .rotations import rot_x, rot_y, rot_z, wrap
 from .types import PropState, Reach
 
 Array = NDArray[np.float64]
@@ -98,7 +98,11 @@ class HandTracks:
             for track, angle in zip((self.inward, self.pitch, roll), layer.angles, strict=True):
                 track[k] += share * (angle - track[k])
             self.turning[k] = total
-        self.pitch *= 1 - carry
+        free = np.zeros(shape)  # places where a held thing goes along with the hand, whichever way up
+        for layer in layers:
+            if isinstance(layer.place, str) and layer.place == "ear":
+                free[layer.hand] = np.maximum(free[layer.hand], layer.weight)
+        self.pitch *= 1 - carry * (1 - free)
         self.tilt = roll * (1 - carry) + tilt
         self.reaching = any(not isinstance(x.place, str) for x in layers)
 
@@ -131,7 +135,8 @@ class HandTracks:
 
     def _up(self, k: int) -> Array:
         """[T, 3, 3]: how a held thing stands."""
-        return rot_z(self.hand_yaw(k)) @ rot_x((1.0 - 2.0 * k) * self.tilt[k])
+        lifted = self.pitch[k] * self.carry[k]
+        return rot_z(self.hand_yaw(k)) @ rot_y(-lifted) @ rot_x((1.0 - 2.0 * k) * self.tilt[k])
 
     def held_rotation(self, k: int, since: int, rotation: Array) -> Array:
         """[T, 3, 3]: a thing's rotation if the hand does as it should; it was ``rotation`` at frame ``since``."""

@@ -27,8 +27,10 @@ from .rotations import (
     rot_z,
     rotation,
     rotation_vector,
+    steady,
     turned,
     unit,
+    wrap,
 )
 
 Array = NDArray[np.float64]
@@ -213,8 +215,10 @@ class Figure:
         fk_relative = self._wrist_angles(pose)
         offset = palm_offset(self.skeleton)
         goal_wrist = goals.position - turned(goals.rotation, offset[:, None])
+        arc = turned(heading[None], np.stack([[[0.75, m * 0.45, 0.0]] for m in (1.0, -1.0)]))
         for _ in range(3 if goals.weight.any() else 1):
-            target = wrist_fk + w * (goal_wrist - wrist_fk)
+            way = goal_wrist - wrist_fk
+            target = wrist_fk + w * way + (0.7 * w * (1 - w) * norm(way)[..., None]) * arc
             limb = two_bone(root, target, self._upper, self._lower, pole)
             upper, fore, hand = self._arm_rotations(
                 root, limb.middle, limb.end, limb.hinge, fk_relative, goals
@@ -330,15 +334,14 @@ def rotation_vector_twist(matrix: Array, axis: Array) -> Array:
     """The part of each rotation about the unit ``axis``, as a rotation vector."""
     q = quaternion(matrix)
     along = dot(q[..., 1:], axis)
-    out: Array = axis * (2.0 * np.arctan2(along, q[..., 0]))[..., None]
+    out: Array = axis * np.asarray(wrap(2.0 * np.arctan2(along, q[..., 0])))[..., None]
     return out
 
 
 def _within_limits(relative: Array, axis: Array) -> Array:
     """Wrist rotations eased into what a wrist can do: 1.75 rad of turn, 1.15 rad of bend."""
-    twist = rotation_vector_twist(relative, axis)
-    turned = rotation(twist)
-    swing = rotation_vector(relative @ np.swapaxes(turned, -1, -2))
+    twist = steady(rotation_vector_twist(relative, axis))
+    swing = rotation_vector(relative @ np.swapaxes(rotation(twist), -1, -2))
     return rotation(_soft_limit(swing, 1.15)) @ rotation(_soft_limit(twist, 1.75))
 
 

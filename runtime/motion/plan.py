@@ -96,6 +96,8 @@ def plan_task(
     plan.acts = True
     route.wait(delay)
     clip_start = route.now
+    if task.fetch is not None:
+        _fetch(plan, task, variant.stride, props, rng)
     _go(plan, task, variant.stride, rng)
     _sit_or_stand(plan, task, rng)
     _take_needed(plan, task, props)
@@ -110,6 +112,23 @@ def plan_task(
         _play(plan, variant.timeline, start, duration, task)
         route.now = max(route.now, start + duration)
     plan.end = route.now
+
+
+def _fetch(
+    plan: Plan,
+    task: Task,
+    stride: tuple[float, float],
+    props: dict[int, PropState],
+    rng: np.random.Generator,
+) -> None:
+    """Goes to the thing needed, if there is a way to go, and takes it."""
+    assert task.fetch is not None
+    if len(task.fetch) > 1:
+        if plan.route.seat is not None:
+            plan.route.stand(STAND_TIME / task.speed)
+        manner = MANNERS.get(task.clip.travel, WALK)
+        plan.route.travel(task.fetch, task.fetch_heading, manner, task.speed, stride, rng)
+    _take_needed(plan, task, props)
 
 
 def _go(plan: Plan, task: Task, stride: tuple[float, float], rng: np.random.Generator) -> None:

@@ -100,10 +100,24 @@ def rotation_vector(matrix: Array) -> Array:
     return q[..., 1:] * scale[..., None]
 
 
+def steady(vector: Array) -> Array:
+    """Rotation vectors [..., T, 3] that do not jump to the other way round from frame to frame.
+
+    The same rotations, but turns beyond half a circle are followed rather than flipped.
+    """
+    angle = norm(vector)
+    axis = vector / np.maximum(angle, 1e-12)[..., None]
+    follow = dot(axis[..., 1:, :], axis[..., :-1, :])
+    sign = np.ones_like(angle)
+    sign[..., 1:] = np.cumprod(np.where(follow < 0, -1.0, 1.0), axis=-1)
+    return axis * (sign * np.unwrap(angle * sign, axis=-1))[..., None]
+
+
 def blend(start: Array, end: Array, share: Array) -> Array:
-    """The way from ``start`` to ``end`` by ``share`` [...], along the shortest turn."""
+    """The way from ``start`` to ``end`` [..., T, 3, 3] by ``share`` [..., T], along the shortest turn at first
+    and then without flipping."""
     relative = np.swapaxes(start, -1, -2) @ end
-    return start @ rotation(rotation_vector(relative) * share[..., None])
+    return start @ rotation(steady(rotation_vector(relative)) * share[..., None])
 
 
 def dot(a: Array, b: Array) -> Array:

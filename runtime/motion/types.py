@@ -227,6 +227,9 @@ class Task:
     variant: name of one of the clip's; path: float64 [K, 2] floor points from where the person is, or None
     arrive_heading: heading to end the path with; None: as the path ends, or facing the target
     speed: 1 as designed, 1.5 half as fast again; duration: seconds of the whole shot to fill, or None
+    fetch: float64 [K, 2] way to the thing the clip needs in a hand, walked before ``path`` (which then starts
+        where this ends); no points at all: it is taken from here, before going; None: it is taken on arrival
+    fetch_heading: heading to take it with
     """
 
     clip: ActionClip
@@ -237,6 +240,8 @@ class Task:
     second: TargetPoint | None = None
     speed: float = 1.0
     duration: float | None = None
+    fetch: NDArray[np.float64] | None = None
+    fetch_heading: float | None = None
 
 
 @dataclass(frozen=True, eq=False)

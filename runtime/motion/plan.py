@@ -64,7 +64,7 @@ class Event:
 
 @dataclass(eq=False)
 class Plan:
-    """One person's shot. ``busy`` until ``end`` seconds; ``held`` is what each hand holds as planned so far."""
+    """One person's shot. Busy until ``end`` seconds; ``held`` is what each hand holds as planned so far."""
 
     name: str
     actor: Actor
@@ -281,8 +281,8 @@ def add_partner(plan: Plan, timeline: Timeline, window: Window, giver: Plan) -> 
     """The other person's part of an action, in step with ``window`` of the one who acts."""
     head = float(giver.actor.skeleton.bind[JOINT["head"]][2])
     xy, _ = giver.route.root(np.array([window.at(0.5)]))
-    point = TargetPoint((float(xy[0, 0]), float(xy[0, 1]), 0.8 * head), (float(xy[0, 0]), float(xy[0, 1]), head),
-                        character=giver.name)  # fmt: skip
+    x, y = float(xy[0, 0]), float(xy[0, 1])
+    point = TargetPoint((x, y, 0.8 * head), (x, y, head), character=giver.name)
     route = plan.route
     if route.seat is None:
         to = float(np.arctan2(*(xy[0] - route.at)[::-1]))

@@ -55,7 +55,7 @@ def errand(
     target = _point(beat.target, state, actor.position, skeletons)
     second = _point(beat.second, state, actor.position, skeletons)
     if clip.needs == "second" and second is None and not actor.held:
-        second = _something_to_pour(target, state, actor.position)
+        beat, second = _something_to_pour(beat, target, state)
     if clip.seat == "down":
         seat = seat_of(beat.target, state, beat.character)
         if seat is None:
@@ -64,6 +64,11 @@ def errand(
         target = TargetPoint(seat.position, seat.position, facing=seat.facing, seat=seat.position)
         if actor.posture == "sitting" and actor.seat and math.dist(actor.seat, seat.position) < 0.3:
             return Errand(_task(clip, target, second, shot), (), None)
+    if clip.needs in ("target", "second"):
+        points = {"target": target, "second": second}
+        fetched = _fetching(beat, clip, points, state, taken, _task(clip, target, second, shot))
+        if fetched is not None:
+            return fetched
     where = _where_to(beat, clip, target, second, state)
     if where is None:
         return Errand(_task(clip, target, second, shot), (), None)
@@ -105,18 +110,68 @@ def _point(
 
 
 def _something_to_pour(
-    target: TargetPoint | None, state: SceneState, near: tuple[float, float, float]
-) -> TargetPoint | None:
-    """The nearest vessel to what is poured into."""
+    beat: Beat, target: TargetPoint | None, state: SceneState
+) -> tuple[Beat, TargetPoint | None]:
+    """The nearest vessel to what is poured into, as the beat's second target."""
+    near = state.actors[beat.character].position
     at = target.position if target is not None else near
-    best: tuple[float, TargetPoint] | None = None
+    best: tuple[float, Target, TargetPoint] | None = None
     for item in state.world.objects:
         if item.id in state.props and item.kind in _POURERS and state.props[item.id].holder is None:
-            found = target_point(object_target(item), state, near)
+            vessel = object_target(item)
+            found = target_point(vessel, state, near)
             away = math.dist(found.position, at)
             if best is None or away < best[0]:
-                best = (away, found)
-    return best[1] if best is not None and best[0] < 1.5 else None
+                best = (away, vessel, found)
+    if best is None or best[0] > 2.5:
+        return beat, None
+    return replace(beat, second=best[1]), best[2]
+
+
+def _fetching(
+    beat: Beat,
+    clip: ActionClip,
+    points: dict[str, TargetPoint | None],
+    state: SceneState,
+    taken: Discs,
+    task: Task,
+) -> Errand | None:
+    """Two ways in one: to the thing the clip needs in a hand, then to whoever or whatever it is for.
+
+    None where one way (or none) is enough, or there is no such pair of ways.
+    """
+    actor = state.actors[beat.character]
+    need, goal = points.get(clip.needs), points["second" if clip.needs == "target" else "target"]
+    if need is None or goal is None or need.object is None or goal.object == need.object:
+        return None
+    if clip.travel == "none" or need.object in {thing for _, thing in actor.held}:
+        return None
+    wanted = {"target": (beat.target, beat.second), "second": (beat.second, beat.target)}[clip.needs]
+    if wanted[0] is None or wanted[1] is None:
+        return None
+    here = (actor.position[0], actor.position[1])
+    people = state.people(but=beat.character) + taken
+    way, heading = np.zeros((0, 2)), None
+    if _away(need, here) > ARM:
+        first = approach(wanted[0], state, beat.character, here, taken)
+        ways = find_paths(state.world, here, (first.x, first.y), people=people) if first else []
+        if first is None or not ways:
+            return None
+        way, heading, here = ways[0], first.heading, (first.x, first.y)
+    task = replace(task, fetch=way, fetch_heading=heading)
+    if _away(goal, here) <= (_NEAR_ENOUGH if goal.character else ARM):
+        return Errand(task, (), Stop(*here, heading if heading is not None else actor.heading))
+    stop = approach(wanted[1], state, beat.character, here, taken)
+    paths = find_paths(state.world, here, (stop.x, stop.y), 2, people=people) if stop else []
+    if stop is None or not paths:
+        return None
+    return Errand(replace(task, arrive_heading=stop.heading), tuple(paths), stop)
+
+
+def _away(point: TargetPoint, here: tuple[float, float]) -> float:
+    """Metres on the floor to a thing, or to where a person stands."""
+    at = point.gaze if point.character else point.position
+    return math.hypot(at[0] - here[0], at[1] - here[1])
 
 
 def _touches(clip: ActionClip, word: str) -> bool:
@@ -145,10 +200,7 @@ def _where_to(
         touched = _touches(clip, word) or (clip.needs == word)
         if not touched and not (point.character and _touches(clip, "meet")):
             continue
-        away = math.hypot(point.gaze[0] - actor.position[0], point.gaze[1] - actor.position[1])
-        if point.character is None:
-            away = math.hypot(point.position[0] - actor.position[0], point.position[1] - actor.position[1])
-        if away > (_NEAR_ENOUGH if point.character else ARM):
+        if _away(point, (actor.position[0], actor.position[1])) > (_NEAR_ENOUGH if point.character else ARM):
             return written
     return None
 

@@ -25,7 +25,7 @@ from .shots import DEFAULT_PROPOSALS, DEFAULT_STYLE, DEFAULT_TAKES, Defaults, Li
 from .source import Span
 from .transitions import Joins
 
-SHORTEST_PERSON, TALLEST_PERSON = 0.5, 2.6
+SHORTEST_PERSON, TALLEST_PERSON = 0.7, 2.4
 
 
 def check(

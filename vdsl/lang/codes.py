@@ -391,7 +391,7 @@ CODES: dict[str, Code] = {
     ),
     "VDS067": Code(
         "impossible height",
-        "People are 0.5m to 2.6m tall.",
+        "People are 0.7m to 2.4m tall.",
         "character carla = woman(height 17m)",
         "character carla = woman(height 1.7m)",
     ),

@@ -43,8 +43,13 @@ class Catalog:
         for each in (script, *used_scripts(script, report)):
             catalog._add(each)
         for kind, name in catalog._own:
-            catalog.get(kind, name)
+            catalog._check_own(kind, catalog.get(kind, name))
         return catalog
+
+    def _check_own(self, kind: str, definition: DefinitionBase | None) -> None:
+        """What of a definition can only be checked with the others at hand: the props of a set."""
+        if kind == "set" and definition is not None:
+            import_module("vdsl.lang.definitions.set").check_set(definition, self, self.report)
 
     def names(self, kind: str) -> tuple[str, ...]:
         """All names of a kind: own ones first, then the library's, each in order of the alphabet."""

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from motion.library import clips, definitions
+from motion.scenes import FPS, angular_steps, at, joint, person, thing
 
 from runtime.motion.perform import perform
 from runtime.motion.types import Actor, SceneMotion, Task
@@ -14,13 +16,35 @@ from vdsl.lang.parse import parse_definition
 from vdsl.lang.source import Source
 from vdsl.stage.actions import build_clip
 
-from motion.library import clips, definitions
-from motion.scenes import FPS, angular_steps, at, joint, person, thing
-
 WANTED = (
-    "walk run sit stand-up wave talk greet pick-up put-down pour drink give point look nod shake-head think "
-    "laugh listen lean type phone call open shrug cheer turn"
-).split()
+    "walk",
+    "run",
+    "sit",
+    "stand-up",
+    "wave",
+    "talk",
+    "greet",
+    "pick-up",
+    "put-down",
+    "pour",
+    "drink",
+    "give",
+    "point",
+    "look",
+    "nod",
+    "shake-head",
+    "think",
+    "laugh",
+    "listen",
+    "lean",
+    "type",
+    "phone",
+    "call",
+    "open",
+    "shrug",
+    "cheer",
+    "turn",
+)
 
 
 def read(text: str) -> tuple[ActionDef | None, Report]:

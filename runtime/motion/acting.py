@@ -220,7 +220,7 @@ class Performer:
         self.speech = speech(talks, self.t, self.fps, self.rng)
 
     def arm_pose(self, carry: Array) -> ArmPose:
-        """Both arms by angles: hanging, swinging with the gait, carrying (``carry`` [2, T]), then the keys."""
+        """Both arms by angles: hanging, swinging with the gait, carrying (``carry`` [2, T]), then keys."""
         c = self.channels
         stride = np.clip(self.lead / (0.42 * self.height), -1.6, 1.6)
         opposite = np.stack([-stride, stride])
@@ -238,11 +238,11 @@ class Performer:
         out = 0.17 + 0.05 * run + 0.5 * self.arm_noise[::-1] + 0.05 * sit + 0.02 * self.breath
         bend = self.rest + 0.20 * np.maximum(lag, -0.4) * (1 - run) + run * (1.45 + 0.25 * lag) + 0.75 * sit
         twist = 0.14 + 0.2 * run + 0.2 * sit + 0.0 * swing
-        hang = {
+        hang: dict[str, Array] = {
             "swing": swing + c.pair("arm", "swing+"), "out": out, "bend": bend, "twist": twist,
             "wrist": 0.12 + 0.1 * lag, "side": np.zeros_like(swing), "turn": np.full_like(swing, 0.35),
         }  # fmt: skip
-        held = {
+        held: dict[str, Array | float] = {
             "swing": 0.18 + 0.25 * opposite * 0.36, "out": 0.16, "bend": 1.42, "twist": 0.18,
             "wrist": 0.0, "side": 0.0, "turn": 0.0,
         }  # fmt: skip
@@ -322,7 +322,7 @@ class Performer:
 
 
 def relative_gaze(eye: Array, yaw: Array, point: Array) -> tuple[Array, Array]:
-    """Turn to the left and down [T] from ``eye`` [T, 3] to ``point`` [T, 3] or [3], seen from heading ``yaw``."""
+    """Turn to the left and down [T] from ``eye`` [T, 3] to ``point`` [(T,) 3], against heading ``yaw``."""
     d = point - eye
     turn = wrap(np.arctan2(d[..., 1], d[..., 0]) - yaw)
     return np.unwrap(turn), np.arctan2(-d[..., 2], np.hypot(d[..., 0], d[..., 1]))

@@ -139,7 +139,7 @@ class HandTracks:
         return rot_z(self.hand_yaw(k)) @ rot_y(-lifted) @ rot_x((1.0 - 2.0 * k) * self.tilt[k])
 
     def held_rotation(self, k: int, since: int, rotation: Array) -> Array:
-        """[T, 3, 3]: a thing's rotation if the hand does as it should; it was ``rotation`` at frame ``since``."""
+        """[T, 3, 3]: a thing's rotation if the hand obeys; it was ``rotation`` at frame ``since``."""
         return self._up(k) @ rot_z(-self.hand_yaw(k)[since]) @ rotation
 
 
@@ -160,7 +160,10 @@ def reach_layer(
     rim: float,
     extra: Array,
 ) -> Layer:
-    """A reach as a layer. window: start and duration in seconds; start: (root xy, heading, skeleton) on arrival."""
+    """A reach as a layer.
+
+    window: start and duration in seconds; start: (root xy, heading, skeleton) on arrival
+    """
     begin, duration = window
     times = [begin + x * duration for x in (reach.start, reach.arrive, reach.leave, reach.end)]
     stays = reach.end >= 1.0 and reach.leave >= 1.0

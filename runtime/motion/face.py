@@ -17,7 +17,7 @@ EYE_TURN, EYE_DOWN, HEAD_TURN, HEAD_NOD = 0.5, 0.4, 1.15, 0.65
 
 @dataclass(frozen=True, eq=False)
 class GazePull:
-    """A direction to look, relative to the body: turn and down [T], with a weight [T] and the head's share."""
+    """A direction to look, relative to the body: turn, down and weight [T], and the head's share."""
 
     turn: Array
     down: Array

@@ -250,7 +250,7 @@ class Figure:
     def _arm_rotations(
         self, root: Array, elbow: Array, wrist: Array, hinge: Array, fk: Array, goals: HandGoals
     ) -> tuple[Array, Array, Array]:
-        """World rotations of upper arms, forearms and hands, each [2, T, 3, 3]; wrists within their limits."""
+        """World rotations of upper arms, forearms and hands, each [2, T, 3, 3]; wrists within limits."""
         bind = self.skeleton.bind
         upper, fore, axes = [], [], []
         front = np.array([1.0, 0.0, 0.0])

@@ -157,8 +157,8 @@ class _Scene:
             return GazePull(zero + 0.25 * side, zero + 0.6, weight, gaze.share)
         point = window.second if gaze.to == "second" else window.target
         who = window.partner if gaze.to == "partner" else point.character if point is not None else None
-        if who in eyes:
-            at = eyes[who]  # type: ignore[index]
+        if who is not None and who in eyes:
+            at = eyes[who]
         elif point is not None:
             at = np.asarray(point.gaze, dtype=np.float64)
         else:
@@ -252,9 +252,9 @@ class _Scene:
         return matrix
 
     def _meet(self, performer: Performer, window: Window, time: float) -> Array | None:
-        if window.partner not in self.performers:
+        other = self.performers.get(window.partner or "")
+        if other is None:
             return None
-        other = self.performers[window.partner]  # type: ignore[index]
         i = min(int(time * self.fps), len(self.t) - 1)
         mine, theirs = performer.root[i], other.root[i]
         gap = theirs - mine

@@ -20,7 +20,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Hold:
-    """A person's hand holds a thing from ``start`` to ``end`` (±1e9: all along), then it stands at ``place``."""
+    """A hand holds a thing from ``start`` to ``end`` (±1e9: all along), then it stands at ``place``."""
 
     person: str
     hand: str

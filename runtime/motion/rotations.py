@@ -114,8 +114,10 @@ def steady(vector: Array) -> Array:
 
 
 def blend(start: Array, end: Array, share: Array) -> Array:
-    """The way from ``start`` to ``end`` [..., T, 3, 3] by ``share`` [..., T], along the shortest turn at first
-    and then without flipping."""
+    """The way from ``start`` to ``end`` [..., T, 3, 3] by ``share`` [..., T].
+
+    Along the shortest turn on the first frame, and from there on without flipping.
+    """
     relative = np.swapaxes(start, -1, -2) @ end
     return start @ rotation(steady(rotation_vector(relative)) * share[..., None])
 

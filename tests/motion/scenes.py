@@ -30,7 +30,9 @@ def skeleton(height: float = 1.7, age: float = 32.0) -> Skeleton:
     return make_skeleton(BodySpec(height=height, age=age))
 
 
-def person(height: float = 1.7, x: float = 0.0, y: float = 0.0, heading: float = 0.0, **state: object) -> Actor:
+def person(
+    height: float = 1.7, x: float = 0.0, y: float = 0.0, heading: float = 0.0, **state: object
+) -> Actor:
     age = 8.0 if height < 1.4 else 32.0
     return Actor(skeleton(height, age), ActorState((x, y, 0.0), heading, **state))  # type: ignore[arg-type]
 

@@ -30,12 +30,16 @@ def grip(motion: SceneMotion, prop: PropState) -> Array:
 def pick(height: float, x: float, y: float, z: float, name: str = "pick-up", **more: object) -> SceneMotion:
     prop = thing(x, y, z)
     target = at(x, y, z + 0.05, object=CUP)
-    return perform({"a": person(height)}, {"a": Task(clips()[name], target=target, **more)}, {CUP: prop}, FPS, 1)  # type: ignore[arg-type]
+    task = Task(clips()[name], target=target, **more)  # type: ignore[arg-type]
+    return perform({"a": person(height)}, {"a": task}, {CUP: prop}, FPS, 1)
+
+
+PLACES = [(0.45, -0.15, 0.74), (0.4, 0.2, 0.9), (0.35, 0.0, 0.42), (0.35, -0.2, 0.0)]
 
 
 @pytest.mark.parametrize("height", HEIGHTS)
-@pytest.mark.parametrize(("x", "y", "z"), [(0.45, -0.15, 0.74), (0.4, 0.2, 0.9), (0.35, 0.0, 0.42), (0.35, -0.2, 0.0)])
-def test_the_hand_reaches_the_grip_and_the_thing_goes_with_it(height: float, x: float, y: float, z: float) -> None:
+@pytest.mark.parametrize(("x", "y", "z"), PLACES)
+def test_hands_reach_grips_and_things_go_with_them(height: float, x: float, y: float, z: float) -> None:
     motion = pick(height, x, y, z)
     prop = thing(x, y, z)
     side = motion.end_actors["a"].held[0][0]
@@ -72,7 +76,8 @@ def test_put_down_leaves_it_where_it_was_asked() -> None:
 
 def test_pouring_takes_the_bottle_first_and_tips_it_over_the_cup() -> None:
     cup, bottle = thing(0.45, 0.05, 0.74), thing(0.45, -0.3, 0.74, 0.12)
-    task = Task(clips()["pour"], target=at(0.45, 0.05, 0.79, object=8), second=at(0.45, -0.3, 0.86, object=CUP))
+    into, from_ = at(0.45, 0.05, 0.79, object=8), at(0.45, -0.3, 0.86, object=CUP)
+    task = Task(clips()["pour"], target=into, second=from_)
     motion = perform({"a": person()}, {"a": task}, {8: cup, CUP: bottle}, FPS, 0)
     up = motion.props[CUP][:, :3, 2]
     tipped = int(np.argmin(up[:, 2]))
@@ -103,7 +108,7 @@ def test_giving_passes_the_thing_on() -> None:
     task = Task(clips()["give"], target=at(0.4, 0, 0.9, object=CUP), second=at(1.0, 0.1, 1.4, character="b"))
     motion = perform(actors, {"a": task}, {CUP: prop}, FPS, 0)
     assert motion.end_actors["a"].held == ()
-    (side, thing_id), = motion.end_actors["b"].held
+    ((side, thing_id),) = motion.end_actors["b"].held
     assert thing_id == CUP
     a, b = palm(motion, "a", "r", 1.6), palm(motion, "b", side, 1.85)
     assert np.linalg.norm(a - b, axis=1).min() < 0.13

@@ -78,7 +78,8 @@ def test_arrives_on_the_spot_with_the_asked_heading(seed: int, heading: float) -
 def test_a_longer_way_takes_longer_and_haste_shortens_it() -> None:
     def frames(length: float, speed: float, how: str = "walk") -> int:
         path = np.array([[0.0, 0.0], [length, 0.0]])
-        return perform({"a": person()}, {"a": Task(travelling(how), path=path, speed=speed)}, {}, FPS, 0).frames
+        task = Task(travelling(how), path=path, speed=speed)
+        return perform({"a": person()}, {"a": task}, {}, FPS, 0).frames
 
     assert frames(2, 1) < frames(4, 1) < frames(8, 1)
     assert frames(4, 1.5) < frames(4, 1)
@@ -108,7 +109,8 @@ def test_motion_is_smooth(how: str, height: float) -> None:
 
 @pytest.mark.parametrize("how", ["walk", "run"])
 def test_knees_bend_forward_and_elbows_back(how: str) -> None:
-    motion = perform({"a": person()}, {"a": Task(travelling(how), path=np.array([[0, 0], [5.0, 0]]))}, {}, FPS, 1)
+    task = Task(travelling(how), path=np.array([[0, 0], [5.0, 0]]))
+    motion = perform({"a": person()}, {"a": task}, {}, FPS, 1)
     for s in "lr":
         hip, knee, ankle = (joint(motion, "a", f"{n}_{s}") for n in ("thigh", "shin", "foot"))
         line = hip + (ankle - hip) * 0.5
@@ -120,7 +122,7 @@ def test_knees_bend_forward_and_elbows_back(how: str) -> None:
 
 def test_nobody_walks_in_step() -> None:
     way = np.array([[0.0, 0.0], [5.0, 0.0]])
-    tasks = {n: Task(travelling(), path=way + [0, k]) for k, n in enumerate(("a", "b"))}
+    tasks = {n: Task(travelling(), path=way + np.array([0, k])) for k, n in enumerate(("a", "b"))}
     actors = {"a": person(), "b": person(y=1.0)}
     motion = perform(actors, tasks, {}, FPS, 0)
     lead = [joint(motion, n, "foot_l")[:, 0] - joint(motion, n, "foot_r")[:, 0] for n in ("a", "b")]
@@ -130,4 +132,6 @@ def test_nobody_walks_in_step() -> None:
 def test_the_same_seed_gives_the_same_motion_and_another_another() -> None:
     one, two, other = (walk(1.7, s, "walk") for s in (5, 5, 6))
     assert np.array_equal(one.world_from_joint["a"], two.world_from_joint["a"])
-    assert one.frames != other.frames or not np.allclose(one.world_from_joint["a"], other.world_from_joint["a"])
+    assert one.frames != other.frames or not np.allclose(
+        one.world_from_joint["a"], other.world_from_joint["a"]
+    )

@@ -22,6 +22,8 @@ from runtime.motion.types import (
 )
 from vdsl.lang.definitions.action import POSED, ActionDef, Key, Move, Part
 
+GRASPS = ("take", "put", "pass")
+
 
 def build_clip(action: ActionDef) -> ActionClip:
     """The clip of an action, with all its variants."""
@@ -30,7 +32,14 @@ def build_clip(action: ActionDef) -> ActionClip:
         for v in action.variants
     )
     return ActionClip(
-        action.name, variants, action.travel, action.sit, action.needs, action.faces, action.turn, action.along
+        action.name,
+        variants,
+        action.travel,
+        action.sit,
+        action.needs,
+        action.faces,
+        action.turn,
+        action.along,
     )  # fmt: skip
 
 
@@ -42,22 +51,27 @@ def timeline(part: Part) -> Timeline:
     return Timeline(
         tracks=_tracks(part.keys, part.hold),
         beats=tuple(
-            Beat(m.words[0], m.numbers[0], m.numbers[1], *m.times, m.numbers[2]) for m in by_kind["beat"]
+            Beat(m.words[0], m.numbers[0], m.numbers[1], m.times[0], m.times[1], m.numbers[2])
+            for m in by_kind["beat"]
         ),
         reaches=tuple(_reach(m) for m in by_kind["reach"]),
-        grasps=tuple(
-            Grasp(m.kind, m.words[0], m.times[0]) for k in ("take", "put", "pass") for m in by_kind[k]
-        ),
-        tilts=tuple(Tilt(m.words[0], m.numbers[0], *m.times) for m in by_kind["tip"]),
-        gazes=tuple(Gaze(m.words[0], *m.times, m.numbers[0]) for m in by_kind["gaze"]),
-        talks=tuple(Talk(*m.times, m.numbers[0]) for m in by_kind["talk"]),
+        grasps=tuple(Grasp(m.kind, m.words[0], m.times[0]) for k in GRASPS for m in by_kind[k]),
+        tilts=tuple(_tilt(m) for m in by_kind["tip"]),
+        gazes=tuple(Gaze(m.words[0], m.times[0], m.times[1], m.numbers[0]) for m in by_kind["gaze"]),
+        talks=tuple(Talk(m.times[0], m.times[1], m.numbers[0]) for m in by_kind["talk"]),
     )
 
 
 def _reach(move: Move) -> Reach:
     hand, to, palm = move.words
+    start, arrive, leave, end = move.times
     ahead, out, above = move.numbers
-    return Reach(hand, to, *move.times, (ahead, out, above), palm)
+    return Reach(hand, to, start, arrive, leave, end, (ahead, out, above), palm)
+
+
+def _tilt(move: Move) -> Tilt:
+    start, arrive, leave, end = move.times
+    return Tilt(move.words[0], move.numbers[0], start, arrive, leave, end)
 
 
 def _tracks(keys: tuple[Key, ...], hold: bool) -> tuple[Track, ...]:

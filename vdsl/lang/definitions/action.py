@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from itertools import pairwise
 
 from .. import ast
 from ..diagnostics import Report
@@ -91,7 +92,7 @@ class Part:
 
 @dataclass(frozen=True)
 class VariantDef:
-    """One way to do an action: ``tempo`` is already in ``duration``, ``amplitude`` and ``mirror`` in the parts."""
+    """One way to do an action; tempo is worked into ``duration``, amplitude and mirror into the parts."""
 
     name: str
     duration: float
@@ -366,7 +367,7 @@ def _beat(reader: Reader, times: tuple[float, ...]) -> Move | None:
 
 
 def _rising(reader: Reader, *times: float) -> tuple[float, ...]:
-    if any(b < a for a, b in zip(times, times[1:], strict=False)):
+    if any(b < a for a, b in pairwise(times)):
         shown = ", ".join(f"{100 * t:g}%" for t in times)
         reader.report.error("VDS144", reader.span, label="these times do not follow one another",
                             help=f"they come out as {shown}")  # fmt: skip

@@ -233,7 +233,7 @@ def _at_spot(
     spot: Spot, world: World, people: Discs, start: tuple[float, float] | None, wide: bool
 ) -> Stop | None:
     x, y, _ = spot.position
-    found = nearest_free(world, (x, y), people, within=1.2 if wide else 0.6, start=start)
+    found = nearest_free(world, (x, y), people, within=1.6 if wide else 1.3, start=start)
     if found is None:
         return None
     moved = math.hypot(found[0] - x, found[1] - y)

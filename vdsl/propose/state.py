@@ -87,7 +87,9 @@ def _placed(placement: Placement, state: SceneState, report: Report) -> ActorSta
         heading = seat.facing if seat.facing is not None else 0.0
         x, y, _ = seat.position
         return ActorState((x, y, 0.0), heading, "sitting", seat.position)
-    stop = approach(placement.at, state, placement.character, start=None)
+    crowd: Discs = tuple((x, y, _APART - 0.25) for x, y, _ in state.people())
+    stop = approach(placement.at, state, placement.character, start=None, taken=crowd)
+    stop = stop or approach(placement.at, state, placement.character, start=None)
     if stop is None:
         report.error(
             "VDS172",
@@ -96,6 +98,10 @@ def _placed(placement: Placement, state: SceneState, report: Report) -> ActorSta
             help="place them at something with free floor beside it",
         )
         return None
+    near = [a for a in state.actors.values() if math.dist(a.position[:2], (stop.x, stop.y)) < 1.6]
+    if placement.facing is None and placement.at.kind == "spot" and near:
+        x, y, _ = near[0].position
+        return ActorState((stop.x, stop.y, 0.0), math.atan2(y - stop.y, x - stop.x))
     if placement.facing is None and placement.at.kind != "spot":
         middle = room_middle(state)
         away = math.hypot(middle[0] - stop.x, middle[1] - stop.y)

@@ -71,7 +71,8 @@ def errand(
             return fetched
     where = _where_to(beat, clip, target, second, state)
     if where is None:
-        return Errand(_task(clip, target, second, shot), (), None)
+        turned = _turned_to(beat, clip, target, state)
+        return Errand(replace(_task(clip, target, second, shot), arrive_heading=turned), (), None)
     here = (actor.position[0], actor.position[1])
     stop = approach(where, state, beat.character, here, taken)
     if stop is None:
@@ -172,6 +173,18 @@ def _away(point: TargetPoint, here: tuple[float, float]) -> float:
     """Metres on the floor to a thing, or to where a person stands."""
     at = point.gaze if point.character else point.position
     return math.hypot(at[0] - here[0], at[1] - here[1])
+
+
+def _turned_to(beat: Beat, clip: ActionClip, target: TargetPoint | None, state: SceneState) -> float | None:
+    """Heading for what hands go to from where one stands, None where it lies ahead already."""
+    actor = state.actors[beat.character]
+    if target is None or actor.posture != "standing" or not _touches(clip, "target"):
+        return None
+    if target.object is not None and target.object in {thing for _, thing in actor.held}:
+        return None
+    to = math.atan2(target.position[1] - actor.position[1], target.position[0] - actor.position[0])
+    off = (to - actor.heading + math.pi) % (2 * math.pi) - math.pi
+    return to if abs(off) > 0.7 else None
 
 
 def _touches(clip: ActionClip, word: str) -> bool:

@@ -94,10 +94,13 @@ def compile_file(
     return Result(folder, build, checked.report, report)
 
 
-def stage_acts(checked: Checked) -> list[Act]:
-    """Every line in its scene with its opening state. Raises ScriptError for what cannot be played."""
+def stage_acts(checked: Checked, hand: Stagehand | None = None) -> list[Act]:
+    """Every line in its scene with its opening state. Raises ScriptError for what cannot be played.
+
+    hand: one that has built sets and bodies before
+    """
     storyboard, report = checked.storyboard, checked.report
-    hand = Stagehand(checked.catalog)
+    hand = hand or Stagehand(checked.catalog)
     acts: list[Act] = []
     for number, scene in enumerate(storyboard.scenes):
         lines = [line for line in storyboard.lines if line.scene == number]

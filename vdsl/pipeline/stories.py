@@ -16,7 +16,6 @@ from ..lang.definitions.types import SetNode
 from ..lang.ir import ANGLES, MOVEMENT_FAMILIES, SCALES
 from ..library import Catalog
 
-_TOPS = ("crimson", "teal", "mustard", "white", "plum", "orange", "olive", "navy", "pink", "sky")
 _TIMES = ("dawn", "day", "dusk", "night")
 _NAMES = ("anna", "ben")
 
@@ -64,10 +63,8 @@ def _walk(node: SetNode) -> Iterator[SetNode]:
 
 def random_story(catalog: Catalog, place: Place, rng: random.Random, lines: int, cast: tuple[str, ...]) -> str:
     """A script of so many story lines at a place, each with one fully named camera."""
-    top = rng.sample(_TOPS, 2)
     script = [f'storyboard "{place.set} {place.room}"']
-    for who, colour in zip(_NAMES, top, strict=True):
-        script.append(f"character {who} = {rng.choice(cast)}(top {colour})")
+    script.extend(f"character {who} = {person}" for who, person in zip(_NAMES, rng.sample(cast, 2), strict=True))
     room = f"{place.set}.{place.room}"
     script.append(f"scene here = {room} at {rng.choices(_TIMES, (1, 5, 2, 1))[0]}")
     actions = [a for a in (catalog.get("action", n) for n in sorted(catalog.names("action"))) if isinstance(a, ActionDef)]

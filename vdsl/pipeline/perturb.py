@@ -1,0 +1,50 @@
+"""Negatives for the discriminator: good tracks shaken about in the seven-number camera space.
+
+"The negative samples come from a random perturbation in the camera action space" (the paper, section
+3.3). Strength 0 changes nothing; 1 is gross.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..cinema.track import CameraTrack
+
+#: At strength 1: share of the subject's distance, radians of aim and roll, log of the focal length,
+#: metres and radians of unsteadiness.
+_SHIFT, _AIM, _ROLL, _FOCAL = 0.9, np.deg2rad(28.0), np.deg2rad(22.0), 0.8
+_SHAKE_POSITION, _SHAKE_AIM = 0.18, np.deg2rad(9.0)
+_LOWEST = 0.08  # metres above the floor
+
+
+def perturbed(track: CameraTrack, strength: float, rng: np.random.Generator) -> CameraTrack:
+    """The track with some of its seven numbers off, by up to ``strength`` (0..1)."""
+    frames = len(track.focal)
+    which = rng.random(5) < 0.55
+    if not which.any():
+        which[rng.integers(5)] = True
+    shift, aim, roll, focal, shake = which * strength
+    reach = float(np.linalg.norm(track.look_at[0] - track.position[0]))
+    position = track.position + shift * _SHIFT * reach * _unit(rng)
+    position = position + shake * _SHAKE_POSITION * _noise(rng, frames)
+    position[:, 2] = np.maximum(position[:, 2], _LOWEST)
+    rotation = track.rotation.copy()
+    rotation[:, 0] += _ROLL * roll * rng.choice((-1, 1)) * rng.uniform(0.5, 1)
+    rotation[:, 1] += _AIM * aim * 0.7 * rng.choice((-1, 1)) * rng.uniform(0.4, 1)
+    rotation[:, 2] += _AIM * aim * rng.choice((-1, 1)) * rng.uniform(0.4, 1)
+    rotation[:, 1:] += shake * _SHAKE_AIM * _noise(rng, frames)[:, :2]
+    scale = np.exp(_FOCAL * focal * rng.choice((-1, 1)) * rng.uniform(0.4, 1))
+    return CameraTrack(position, rotation, track.focal * scale, track.look_at, track.sensor)
+
+
+def _unit(rng: np.random.Generator) -> NDArray[np.float64]:
+    v = rng.normal(size=3)
+    return np.asarray(v / np.linalg.norm(v))
+
+
+def _noise(rng: np.random.Generator, frames: int) -> NDArray[np.float64]:
+    """Band-limited noise [T, 3] of unit size: three slow waves and two quick ones."""
+    t = np.arange(frames)[:, None] / max(frames, 1)
+    waves = [np.sin(2 * np.pi * (k * t + rng.random(3))) / k**0.5 for k in (1, 2, 3, 7, 11)]
+    return np.asarray(sum(waves) / 2.0)

@@ -63,10 +63,11 @@ def _skin(head: Head) -> list[Piece]:
     lash = head.field(_lash_outline(head))
     piece = Piece(clip(patch, opening, keep_outside=True), f.spec.skin, "skin", solid, rule="face")
     piece = hemmed(piece, 0.007 * u)
-    rest, rim = parted(piece, lash, _LASH, "skin")
-    rest, lip = parted(rest, head.field(lips(head)), lip_colour(f), "skin")
-    line_ = parted_all(lip, [head.field(cut) for cut in mouth(head)], (0.24, 0.08, 0.08), "skin")
-    return [rest, rim, *line_]
+    skin, rim = parted(piece, lash, _LASH, "skin")
+    *rest, line_ = parted_all(skin, [head.field(cut) for cut in mouth(head)], (0.24, 0.08, 0.08), "skin")
+    outline = [head.field(cut) for cut in lips(head)]
+    looks = [look for piece in rest for look in parted_all(piece, outline, lip_colour(f), "skin")]
+    return [rim, *looks, line_]
 
 
 def _ears(head: Head) -> list[Piece]:

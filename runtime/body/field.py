@@ -20,6 +20,10 @@ Field = Callable[[Points], Values]
 _SAMPLES = 96
 
 
+def _length(v: Points) -> Values:
+    return np.sqrt(np.einsum("ij,ij->i", v, v))
+
+
 def ellipsoid(centre: ArrayLike, radii: ArrayLike, axes: ArrayLike | None = None) -> Field:
     """An ellipsoid; ``axes`` [3, 3] has its unit axes as rows (the world's where None)."""
     c, r = np.asarray(centre, float), np.broadcast_to(np.asarray(radii, float), (3,))
@@ -30,8 +34,8 @@ def ellipsoid(centre: ArrayLike, radii: ArrayLike, axes: ArrayLike | None = None
         if frame is not None:
             d = d @ frame.T
         q = d / r
-        length = np.sqrt((q * q).sum(1)) + 1e-9
-        slope = np.sqrt(((q / r) ** 2).sum(1)) + 1e-9
+        length = _length(q) + 1e-9
+        slope = _length(q / r) + 1e-9
         return length * (length - 1.0) / slope
 
     return field
@@ -60,7 +64,7 @@ def round_cone(a: ArrayLike, b: ArrayLike, ra: float, rb: float, flat: ArrayLike
         d = widen(p - pa)
         t = np.clip(d @ axis / length2, 0.0, 1.0)
         off = d - t[:, None] * axis
-        return (np.sqrt((off * off).sum(1)) - (ra + (rb - ra) * t)) * tilt / max(factor, 1.0)
+        return (_length(off) - (ra + (rb - ra) * t)) * tilt / max(factor, 1.0)
 
     return field
 
@@ -99,6 +103,7 @@ def loft(
     grid = np.linspace(at[0], at[-1], _SAMPLES)
     table = PchipInterpolator(at, columns, axis=0)(grid)
     table[:, :4] = np.maximum(table[:, :4], 1e-4)
+    least = table[:, :4].min(1)
     scale = (_SAMPLES - 1) / (at[-1] - at[0])
     slope = np.abs(np.gradient(table[:, :4], grid, axis=0)).mean(1)
     tilt = 1.0 / np.sqrt(1.0 + np.minimum(slope, 2.0) ** 2)
@@ -112,9 +117,9 @@ def loft(
         dv, dw = local[:, 1] - row[:, 4], local[:, 2] - row[:, 5]
         qv = np.abs(dv) / np.where(dv > 0, row[:, 0], row[:, 1])
         qw = np.abs(dw) / np.where(dw > 0, row[:, 3], row[:, 2])
-        q = (qv**power + qw**power) ** (1.0 / power) + 1e-6
+        q = (np.hypot(qv, qw) if power == 2.0 else (qv**power + qw**power) ** (1.0 / power)) + 1e-6
         away = np.hypot(dv, dw)
-        mean = np.where(q > 1e-3, away / q, row[:, :4].min(1))
+        mean = np.where(q > 1e-3, away / q, least[i])
         radial = (q - 1.0) * mean * tilt[i]
         end = np.maximum(at[0] - local[:, 0], local[:, 0] - at[-1])
         return np.minimum(np.maximum(radial, end), 0.0) + np.hypot(

@@ -60,7 +60,7 @@ def hairline(
 ) -> Field:
     """Negative where hair grows: above a line over forehead, temple, around the ear and down to the nape.
 
-    sweep: slant of the line over the forehead, for a fringe brushed to the side
+    sweep: slant of the line over the forehead, for hair brushed to the side
     """
     line = side_line(
         (
@@ -81,6 +81,7 @@ def hairline(
 
     def field(p: Points) -> Values:
         x = np.clip(p[:, 0], -0.6, 0.6)
+        front = np.clip((p[:, 0] - 0.14) / 0.12, 0.0, 1.0)
         front = np.clip((p[:, 0] - 0.14) / 0.12, 0.0, 1.0)
         return np.asarray(line(x)) + sweep * p[:, 1] * front - p[:, 2]
 
@@ -123,7 +124,7 @@ def _short(head: Head) -> list[Piece]:
     quiff = round_cone((0.20, 0.06, 0.93), (0.30, -0.13, 0.90), 0.085, 0.10)
     shape = grooves(union([(_both(_cap(head, 0.030, 0.05)), 0.0), (quiff, 0.10)]), 0.005, 11)
     cut = _both(hairline(head, 0.80, 0.70, 0.20))
-    return [_piece(head, shape, (-0.62, -0.5, -0.05), (0.62, 0.5, 1.2), cut, 1000, symmetric=False)]
+    return [_piece(head, shape, (-0.62, -0.5, -0.05), (0.62, 0.5, 1.2), cut, 900, symmetric=False)]
 
 
 def _crop(head: Head) -> list[Piece]:
@@ -190,10 +191,18 @@ def _long(head: Head) -> list[Piece]:
 
 
 def _tied(head: Head) -> Piece:
-    cut = hairline(head, 0.80, 0.70, 0.20, 0.44)
-    return _piece(
-        head, grooves(_cap(head, 0.026, 0.02), 0.003, 14), (-0.62, -0.5, 0.0), (0.6, 0.5, 1.15), cut, 480
-    )
+    """Hair combed back from a parting at the side."""
+    young = head.figure.spec.youth > 0.3
+    cut = hairline(head, 0.755 if young else 0.80, 0.66, 0.20, 0.44, sweep=0.36 if young else 0.16)
+    wave = round_cone((0.30, -0.20, 0.80), (0.30, 0.16, 0.90), 0.085, 0.075)
+    shape = grooves(union([(_both(_cap(head, 0.040, 0.06)), 0.0), (wave, 0.10)]), 0.005, 12)
+
+    def sided(p: Points) -> Values:
+        q = p.copy()
+        q[:, 1] = np.where(p[:, 0] > 0.14, p[:, 1], np.abs(p[:, 1]))
+        return cut(q)
+
+    return _piece(head, shape, (-0.64, -0.5, 0.0), (0.6, 0.5, 1.2), sided, 900, symmetric=False)
 
 
 def _ponytail(head: Head) -> list[Piece]:
@@ -273,9 +282,9 @@ def _tonsure(head: Head) -> list[Piece]:
         ring = p[:, 2] - 0.70 + 0.25 * np.clip(p[:, 0], -0.3, 0.3)
         return np.maximum(np.maximum(line(p), ring), p[:, 0] - 0.12)
 
-    return [
-        _piece(head, grooves(_cap(head, 0.035), 0.004, 12), (-0.6, -0.5, 0.0), (0.6, 0.5, 1.15), cut, 420)
-    ]
+    thick = _cap(head, 0.040)
+    shape: Field = lambda p: thick(p) + 0.032 * np.clip((p[:, 2] - 0.48) / 0.2, 0.0, 1.0)  # noqa: E731
+    return [_piece(head, grooves(shape, 0.004, 12), (-0.6, -0.5, 0.0), (0.6, 0.5, 1.15), cut, 420)]
 
 
 def _facial(head: Head) -> list[Piece]:

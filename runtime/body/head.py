@@ -150,19 +150,21 @@ def eye_opening(head: Head, grow: float = 0.0, lift: float = 0.0) -> Field:
     return field
 
 
-def lips(head: Head) -> Field:
-    """Outline of both lips, seen from the front."""
+def lips(head: Head) -> list[Field]:
+    """Outline of both lips: what is inside all of these."""
     m, half = head.mouth_z, head.mouth_half
     full = 0.66 + 0.26 * head.fem - 0.25 * head.figure.spec.eld
 
-    def field(p: Points) -> Values:
+    def upper(p: Points) -> Values:
         a = np.abs(p[:, 1]) / half
-        b = p[:, 2] - m - 0.010 * a**2
         bow = 0.040 * full * (1.0 - a**1.7) * (1.0 - 0.22 * np.exp(-((a / 0.16) ** 2)))
-        low = 0.047 * full * (1.0 - np.minimum(a / 0.92, 1.3) ** 2.2)
-        return np.maximum(np.maximum(b - bow, -b - low), 0.16 - p[:, 0])
+        return p[:, 2] - m - 0.010 * a**2 - bow
 
-    return field
+    def lower(p: Points) -> Values:
+        a = np.abs(p[:, 1]) / half
+        return m + 0.010 * a**2 - p[:, 2] - 0.047 * full * (1.0 - np.minimum(a / 0.92, 1.3) ** 2.2)
+
+    return [upper, lower, lambda p: 0.16 - p[:, 0]]
 
 
 def mouth(head: Head) -> list[Field]:

@@ -130,7 +130,7 @@ def _tshirt(f: Figure) -> list[Piece]:
 
 
 def _long_sleeved(
-    f: Figure, grow: float, ease: float, hem: float, collar: Field, wrist: float, faces: int = 1000
+    f: Figure, grow: float, ease: float, hem: float, collar: Field, wrist: float, faces: int = 900
 ) -> Piece:
     h = f.p.height
     end = (f.p.upper_arm + f.p.forearm) * wrist
@@ -174,14 +174,15 @@ def _collar(f: Figure, colour: Colour, drop: float = 1.0) -> list[Piece]:
     drop: how far it comes down, less under a jacket
     """
     h = f.p.height
-    z, x = f.level(1.135), f.joint("neck")[0] + 0.002 * h
+    z, x = f.level(1.165), f.joint("neck")[0] + 0.002 * h
     r = h * f.mix(0.040, 0.0335) * (1.0 + 0.35 * f.heavy)
     solid = loft(
         (x, 0.0, z),
         TORSO_FRAME,
         [
-            Knot(-0.050 * h, 2.30 * r, 1.75 * r, 2.05 * r),
-            Knot(-0.020 * h, 1.62 * r, 1.40 * r, 1.52 * r),
+            Knot(-0.085 * h, 3.00 * r, 2.10 * r, 2.50 * r),
+            Knot(-0.050 * h, 2.30 * r, 1.75 * r, 2.25 * r),
+            Knot(-0.020 * h, 1.60 * r, 1.34 * r, 1.56 * r),
             Knot(0.006 * h, 1.16 * r, 1.14 * r, 1.14 * r, v=-0.002 * h),
             Knot(0.034 * h, 0.96 * r, 1.02 * r, 0.98 * r, v=-0.004 * h),
         ],
@@ -191,16 +192,15 @@ def _collar(f: Figure, colour: Colour, drop: float = 1.0) -> list[Piece]:
         dx, y, dz = p[:, 0] - x, np.abs(p[:, 1]), p[:, 2] - z
         up = dz - (0.022 * h - 0.42 * dx)
         front = np.clip(dx / (0.04 * h), 0.0, 1.5)
-        down = (
-            -0.012 * h - 0.40 * dx - 0.022 * h * front * np.exp(-(((y - 0.026 * h) / (0.016 * h)) ** 2))
-        ) - dz
+        tip = 0.024 * h * drop * front * np.exp(-(((y - 0.027 * h) / (0.015 * h)) ** 2))
+        down = -0.035 * h - 0.30 * np.clip(dx, 0.0, 1.0) * drop - tip - dz
         open_ = np.where(dx > 0, 0.004 * h + np.maximum(0.010 * h - 0.35 * dx - dz, 0.0) * 0.75 - y, -1.0)
         return np.maximum(np.maximum(up, down), open_)
 
     patch = polygonise(
-        solid, (x - 0.1 * h, -0.03, z - 0.06 * h), (x + 0.12 * h, 0.1 * h, z + 0.05 * h), 0.0045
+        solid, (x - 0.1 * h, -0.03, z - 0.10 * h), (x + 0.12 * h, 0.1 * h, z + 0.05 * h), 0.0045
     )
-    patch = clip(half(simplify(patch, 520, solid)), cut)
+    patch = clip(half(simplify(patch, 420, solid)), cut)
     return [hemmed(Piece(patch, shade(colour, 1.10), "trim", solid, material="cloth"), 0.010 * h)]
 
 
@@ -223,7 +223,7 @@ def _blazer(f: Figure, hem_level: float = -0.22, skirt: float = 0.0) -> list[Pie
     if skirt > 0:
         body, tail = solid, _tail(f, hem)
         solid = lambda p: smooth_min(body(p), tail(p), 0.05 * h)  # noqa: E731
-    patch = _surface(f, solid, hem - 0.04 * h, f.level(1.35), True, 1050)
+    patch = _surface(f, solid, hem - 0.04 * h, f.level(1.35), True, 950)
     patch = clip(patch, both(both(above(hem, 0.05), along_arm(f, end)), neckline(f, 0.030 * h, 0.004 * h)))
     button = f.level(0.36)
     opening, lapel = _front(f, button, 0.0), _front(f, button, 0.042 * h)
@@ -245,7 +245,7 @@ def _shirt_front(f: Figure) -> Piece:
     low, high = f.level(-0.05), f.level(1.35)
     solid = trunk(f, 0.0066 * h, 0.10)
     patch = polygonise(solid, (-0.1 * h, -0.03, low), (0.2 * h, 0.10 * h, high), 0.0075 * h / 1.7)
-    patch = half(simplify(patch, 420, solid))
+    patch = half(simplify(patch, 260, solid))
     cut, shown = neckline(f, 0.040 * h, -0.004 * h, 0.012 * h), _front(f, f.level(0.36), 0.016 * h)
     patch = clip(patch, both(cut, shown))
     return Piece(patch, f.spec.shirt_color, "shirt", solid, material="cloth")
@@ -357,7 +357,7 @@ def bottom(f: Figure) -> list[Piece]:
         solid = lambda p: smooth_min(inner(p), wide(p), 0.02 * h)  # noqa: E731
     low = f.p.knee + 0.035 * h if shorts else 0.56 * f.p.ankle
     waist = f.level(0.14)
-    patch = _surface(f, solid, low - 0.04 * h, waist + 0.05 * h, False, 800)
+    patch = _surface(f, solid, low - 0.04 * h, waist + 0.05 * h, False, 650)
     patch = clip(patch, both(above(low, 0.06), lambda p: p[:, 2] - waist))
     piece = Piece(patch, f.spec.bottom_color, "bottom", solid, rule="legs", material="cloth")
     return [hemmed(piece, 0.010 * h)]
@@ -380,7 +380,7 @@ def shoes(f: Figure) -> list[Piece]:
     h, solid = f.p.height, shoe(f)
     n, y = f.p.foot, f.p.hip[0]
     patch = polygonise(solid, (-0.35 * n, y - 0.3 * n, -0.004), (0.85 * n, y + 0.3 * n, 0.12 * h), 0.0055)
-    patch = simplify(patch, 300, solid)
+    patch = simplify(patch, 250, solid)
     upper = Piece(patch, f.spec.shoes_color, "shoes", solid, rule="legs", symmetry="side")
     sole = 0.22 * f.p.ankle
     dark = shade(f.spec.shoes_color, 0.55) if sum(f.spec.shoes_color) > 0.9 else (0.72, 0.70, 0.66)

@@ -94,6 +94,8 @@ def tucked(piece: Piece, cover: Field) -> Piece:
     vertices = piece.patch.vertices
     push = 0.55 * np.clip(-cover(vertices) - 0.003, 0.0, 0.012)
     slope = gradient(piece.solid, vertices)
+    if piece.symmetry == "half":
+        slope[np.abs(vertices[:, 1]) < 1e-9, 1] = 0.0
     slope /= np.maximum(np.linalg.norm(slope, axis=1, keepdims=True), 1e-9)
     return replace(piece, patch=Patch(vertices - slope * push[:, None], piece.patch.faces))
 

@@ -29,7 +29,7 @@ def polygonise(field: Field, low: ArrayLike, high: ArrayLike, step: float) -> Pa
     """The zero surface of a field inside a box, by marching cubes on a grid of ``step`` metres.
 
     Fine values are taken only near the surface, found on a grid four times as coarse: parts thinner
-    than about two steps may be missed. Vertices are moved onto the surface by one Newton step.
+    than about two steps may be missed. Vertices lie on the grid's edges, by linear interpolation.
     """
     lo, hi = np.asarray(low, float), np.asarray(high, float)
     blocks = np.maximum(np.ceil((hi - lo) / (4 * step)).astype(int), 1)
@@ -47,7 +47,7 @@ def polygonise(field: Field, low: ArrayLike, high: ArrayLike, step: float) -> Pa
         return Patch(np.zeros((0, 3)), np.zeros((0, 3), np.int64))
     vertices, faces, _, _ = marching_cubes(volume.astype(np.float32), 0.0, spacing=(step,) * 3)
     vertices = vertices.astype(np.float64) + (lo + 0.5 * step - step)
-    return Patch(settle(field, vertices, step), faces.astype(np.int64))
+    return Patch(vertices, faces.astype(np.int64))
 
 
 def settle(field: Field, vertices: Points, reach: float) -> Points:

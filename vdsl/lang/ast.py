@@ -283,9 +283,25 @@ Statement: TypeAlias = (
 
 
 @dataclass(frozen=True)
+class Broken:
+    """A line that does not read: its first word, and the one after it where that is a name.
+
+    The checker needs it so that one mistake is not told again wherever the line would have been used.
+    """
+
+    keyword: str
+    name: str | None
+    span: Span = field(compare=False, repr=False)
+
+
+@dataclass(frozen=True)
 class Script:
-    """A whole file, its statements in the order written; lines with errors are left out."""
+    """A whole file, its statements in the order written; lines with errors are left out.
+
+    broken: what was left out
+    """
 
     source: Source
     statements: tuple[Statement, ...]
     span: Span = field(compare=False, repr=False)
+    broken: tuple[Broken, ...] = field(default=(), compare=False, repr=False)

@@ -85,7 +85,7 @@ class BeatReader:
             "VDS071",
             rest[0].span,
             label=f"no action is called `{rest[0].text}`",
-            help=f"actions are {listing(self.catalog.names('action'), 40)}",
+            help=f"actions are {listing(self.catalog.names('action'), 40, last='and')}",
             suggestion=meant,
             fix=meant,
         )
@@ -203,7 +203,7 @@ def unknown_character(word: ast.Name, characters: tuple[str, ...], report: Repor
     """Report a name that is no character's."""
     meant = nearest(word.text, characters)
     if characters:
-        help = f"characters are {listing(characters)}"
+        help = f"characters are {listing(characters, last='and')}"
     else:
         help = f"add a line `character {word.text} = woman` above"
     report.error(

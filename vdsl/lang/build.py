@@ -84,7 +84,7 @@ class Builder:
             "VDS008",
             Span(self.source, span.start + cut, span.end),
             label=f"`{_short(unit)}` is no unit",
-            help=f"units are {listing(UNITS)}",
+            help=f"units are {listing(UNITS, last='and')}",
             suggestion=meant,
             fix=meant,
         )

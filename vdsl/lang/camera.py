@@ -151,7 +151,7 @@ def _unknown(word: str, span: Span, found: dict[str, tuple[str, ...]], report: R
             "VDS041",
             span,
             label=f"`{span.text}` is {_a(slot)} of film grammar that cannot be shot yet",
-            help=words.hint(word) or f"{slot}s now are {listing(known[slot], 20)}",
+            help=words.hint(word) or f"{slot}s now are {listing(known[slot], 20, last='and')}",
             suggestion=near,
             fix=near,
         )

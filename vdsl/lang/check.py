@@ -85,12 +85,28 @@ class _Checker:
                 if isinstance(statement, ast.CharacterLine):
                     self._character(statement)
         self._headers()
+        self._broken_characters()
+        broken = [b for b in self.script.broken if b.keyword == "scene"]
         for index, statement in enumerate(self.script.statements):
+            while broken and broken[0].span.start < statement.span.start:
+                self._broken_scene(index - 1, broken.pop(0))
             self._statement(index, statement)
         self._finish_scene()
         if not self.lines and self.script.statements and not self.report.has_errors:
             self._nothing_to_shoot()
         return self._storyboard()
+
+    def _broken_characters(self) -> None:
+        """Who has a line that does not read is known all the same."""
+        for line in self.script.broken:
+            if line.keyword == "character" and line.name is not None:
+                self.characters.setdefault(line.name, Character(line.name, "", (), line.span))
+
+    def _broken_scene(self, index: int, line: ast.Broken) -> None:
+        """A scene whose line does not read: what happens in it is checked as far as it can be."""
+        self._finish_scene()
+        members = self._members(index)
+        self.stage = _Stage(len(self.scenes), line.name or "", "", (), "day", None, members, line.span)
 
     def _storyboard(self) -> Storyboard:
         said, over = self.settings, self.overrides
@@ -225,7 +241,7 @@ class _Checker:
             "VDS064" if kind == "cast" else "VDS062",
             name.span,
             label=f"no {what} is called `{name.text}`",
-            help=f"there are {listing(names, 20)}",
+            help=f"there are {listing(names, 20, last='and')}",
             suggestion=meant,
             fix=meant,
         )
@@ -296,7 +312,7 @@ class _Checker:
                 "VDS062",
                 written.span,
                 label=f"`{name.text}` has no room `{'.'.join(room)}`",
-                help=f"it has {listing(rooms)}" if rooms else "it has no rooms",
+                help=f"it has {listing(rooms, last='and')}" if rooms else "it has no rooms",
                 suggestion=meant,
                 fix=meant,
             )
@@ -387,7 +403,7 @@ class _Checker:
                 "VDS069",
                 place.span,
                 label=f"one cannot sit at `{place.text}`" if line.at else "sit where?",
-                help=f"there are {listing(dict.fromkeys(seats))} to sit on"
+                help=f"there are {listing(dict.fromkeys(seats), last='and')} to sit on"
                 if seats
                 else "this scene has no seats",
             )

@@ -162,12 +162,12 @@ def _fold(word: str) -> str:
     return word.casefold().replace("_", "-")
 
 
-def listing(words: Iterable[str], limit: int = 12) -> str:
+def listing(words: Iterable[str], limit: int = 12, last: str = "or") -> str:
     """``a, b or c``, shortened where it would be long."""
     all_words = list(words)
     shown = all_words[:limit]
     if len(all_words) > limit:
         return ", ".join(shown) + f" … ({len(all_words) - limit} more)"
     if len(shown) > 1:
-        return ", ".join(shown[:-1]) + " or " + shown[-1]
+        return ", ".join(shown[:-1]) + f" {last} " + shown[-1]
     return shown[0] if shown else "nothing"

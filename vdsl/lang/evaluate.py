@@ -65,6 +65,7 @@ def evaluate(
             help=f"write {fix}" if fix else f"multiply it by 1{short}",
             fix=fix,
         )
+        return got.value * UNIT_SCALE[short]  # as it was probably meant, so that one mistake is one
     else:
         report.error(
             "VDS021", value.span, label=f"{_DESCRIBE[want]} is wanted here, this is {_DESCRIBE[got.kind]}"
@@ -84,10 +85,28 @@ def evaluate_point(
             help="such as (1, 2)m or (10cm, 0, 1m)",
         )
         return None
-    numbers = [evaluate(item, env, want, report, value.unit) for item in value.items]
+    unit = value.unit
+    if unit is None and want in _EXAMPLES and _all_bare(value):
+        unit, what = _EXAMPLES[want]
+        fix = f"{value.span.text}{unit}"
+        report.error(
+            "VDS020",
+            value.span,
+            label=f"each of these is {what} and needs a unit",
+            help=f"write {fix}",
+            fix=fix,
+        )
+    numbers = [evaluate(item, env, want, report, unit) for item in value.items]
     if any(n is None for n in numbers):
         return None
     return tuple(float(n) for n in numbers if n is not None)
+
+
+def _all_bare(group: ast.Group) -> bool:
+    """Whether a group has nothing but numbers without units, and not only zeros."""
+    numbers = [item.value if isinstance(item, ast.Negate) else item for item in group.items]
+    bare = all(isinstance(n, ast.Number) and n.unit is None for n in numbers)
+    return bare and any(isinstance(n, ast.Number) and n.value != 0 for n in numbers)
 
 
 def evaluate_arguments(
@@ -104,7 +123,7 @@ def evaluate_arguments(
                 "VDS022",
                 argument.name.span,
                 label=f"`{callee}` has no parameter `{name}`",
-                help=f"it has {listing(by_name)}" if by_name else "it has no parameters at all",
+                help=f"it has {listing(by_name, last='and')}" if by_name else "it has no parameters at all",
                 suggestion=nearest(name, by_name),
             )
             continue
@@ -246,7 +265,7 @@ def _named(value: ast.Name, env: Env, report: Report) -> Quantity | None:
         "VDS027",
         value.span,
         label=f"no number is called `{name}` here",
-        help=hint or (f"known here: {listing(numbers)}" if numbers else None),
+        help=hint or (f"known here: {listing(numbers, last='and')}" if numbers else None),
         suggestion=nearest(name, numbers),
     )
     return None

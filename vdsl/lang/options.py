@@ -79,7 +79,7 @@ def _unknown(option: ast.Option, report: Report) -> None:
         "VDS050",
         option.name.span,
         label=f"there is no option `{name}`",
-        help=f"options are {listing(_READERS, 20)}; a time alone is the duration",
+        help=f"options are {listing(_READERS, 20, last='and')}; a time alone is the duration",
         suggestion=meant,
         fix=meant,
     )

@@ -21,6 +21,7 @@ from .source import Source, Span
 from .syntax_errors import explain_syntax, unknown_statement
 
 _FIRST_WORD = re.compile(r"[^\W\d][\w-]*")
+_FIRST_WORDS = re.compile(r"([^\W\d][\w-]*)(?:[ \t]+\"?([^\W\d][\w-]*))?")
 _HEADERS = ("fps", "size", "aspect", "seed", "rig", "style", "takes", "proposals")
 _TRANSITIONS = ("cut", "dissolve", "fade-out", "fade-in", "wipe")
 _KINDS = ("set", "prop", "cast", "action")
@@ -41,8 +42,11 @@ def parse(source: Source, report: Report | None = None) -> tuple[ast.Script, Rep
     report = Report() if report is None else report
     reader = _Reader(source, report)
     statements: list[ast.Statement] = []
+    broken: list[ast.Broken] = []
     for line in cut(source, report):
         statement = reader.statement(line)
+        if statement is None:
+            broken.append(_broken(source, line))
         if isinstance(statement, ast.StoryNode) and not statement.beats:
             last = statements[-1] if statements else None
             if not line.gap and reader.attaches and isinstance(last, ast.StoryNode):
@@ -51,7 +55,13 @@ def parse(source: Source, report: Report | None = None) -> tuple[ast.Script, Rep
         if statement is not None:
             statements.append(statement)
         reader.attaches = isinstance(statement, ast.StoryNode) and bool(statement.beats)
-    return ast.Script(source, tuple(statements), Span(source, 0, len(source.text))), report
+    return ast.Script(source, tuple(statements), Span(source, 0, len(source.text)), tuple(broken)), report
+
+
+def _broken(source: Source, line: Line) -> ast.Broken:
+    match = _FIRST_WORDS.match(source.text, line.start, line.end)
+    keyword, name = match.groups() if match else ("", None)
+    return ast.Broken(keyword, name, Span(source, line.start, line.end))
 
 
 def parse_definition(source: Source, kind: str, name: str, report: Report) -> ast.Definition | None:

@@ -164,7 +164,7 @@ class Scope:
             "VDS060",
             name.span,
             label=f"nothing is called `{name.text}` here",
-            help=f"the scene has {listing(things)}" if things else None,
+            help=f"the scene has {listing(things, last='and')}" if things else None,
             suggestion=meant,
             fix=meant,
         )
@@ -184,7 +184,9 @@ class Scope:
                 "VDS060",
                 name.span,
                 label=f"`{whole}` has no `{part}`",
-                help=f"it has {listing(dict.fromkeys(inside))}" if inside else "it has no parts or spots",
+                help=f"it has {listing(dict.fromkeys(inside), last='and')}"
+                if inside
+                else "it has no parts or spots",
                 suggestion=f"{whole}.{meant}" if meant else None,
                 fix=f"{whole}.{meant}" if meant else None,
             )

@@ -34,6 +34,7 @@ class Catalog:
         self._library = library
         self._own: dict[tuple[str, str], ast.Definition] = {}
         self._index: dict[str, dict[str, Source]] = {}
+        self._unread: set[tuple[str, str]] = set()
         self._read: dict[tuple[str, str], DefinitionBase | None] = {}
 
     @classmethod
@@ -53,8 +54,8 @@ class Catalog:
 
     def names(self, kind: str) -> tuple[str, ...]:
         """All names of a kind: own ones first, then the library's, each in order of the alphabet."""
-        own = sorted(name for k, name in self._own if k == kind)
-        return (*own, *(name for name in sorted(self._scan(kind)) if (kind, name) not in self._own))
+        own = sorted({name for k, name in (*self._own, *self._unread) if k == kind})
+        return (*own, *(name for name in sorted(self._scan(kind)) if name not in own))
 
     def get(self, kind: str, name: str) -> DefinitionBase | None:
         """The definition, read; None where there is none or it could not be read (then it is reported)."""
@@ -76,8 +77,10 @@ class Catalog:
 
     def _add(self, script: ast.Script) -> None:
         """Take the definitions of a script; a name that is taken already in the same file is an error."""
+        self._unread.update((b.keyword, b.name) for b in script.broken if b.keyword in KINDS and b.name)
         for statement in script.statements:
             if isinstance(statement, ast.FileDefinition):
+                self._unread.add((statement.kind, statement.name.text))
                 self.report.error(
                     "VDS017",
                     statement.path.span,
@@ -113,6 +116,8 @@ class Catalog:
     def _definition(self, kind: str, name: str) -> ast.Definition | None:
         if (kind, name) in self._own:
             return self._own[kind, name]
+        if (kind, name) in self._unread:  # it is there, and reported
+            return None
         source = self._scan(kind).get(name)
         return None if source is None else parse_definition(source, kind, name, self.report)
 

@@ -249,7 +249,7 @@ class Reader:
                     "VDS030",
                     option.name.span,
                     label=f"`{self.head}` has no option `{name}`",
-                    help=f"it has {listing(self._asked)}" if self._asked else "it has no options",
+                    help=f"it has {listing(self._asked, last='and')}" if self._asked else "it has no options",
                     suggestion=nearest(name, self._asked),
                 )
         for index, value in enumerate(self.entry.values):
@@ -311,9 +311,13 @@ def unknown_entry(entry: ast.Entry, known: Iterable[str], where: str, report: Re
     head = entry.head.text
     meant = nearest(head, known)
     report.error(
-        "VDS033", entry.head.span, label=f"{where} has no `{head}`", help=f"it has {listing(known, 20)}",
-        suggestion=meant, fix=meant,
-    )  # fmt: skip
+        "VDS033",
+        entry.head.span,
+        label=f"{where} has no `{head}`",
+        help=f"it has {listing(known, 20, last='and')}",
+        suggestion=meant,
+        fix=meant,
+    )
 
 
 def _float(got: float | str | None, default: T) -> float | T:

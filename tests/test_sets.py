@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+import re
+from pathlib import Path
 
 import pytest
 
@@ -264,3 +266,38 @@ def test_what_stories_count_on() -> None:
         "ball",
         "newspaper",
     } <= set(movable)
+
+
+# --- the reference ----------------------------------------------------------------------
+
+DOCS = Path(__file__).parent.parent / "docs" / "sets.md"
+
+
+def test_the_reference_lists_everything() -> None:
+    text = DOCS.read_text(encoding="utf-8")
+    for name in CATALOG.names("prop"):
+        definition = CATALOG.get("prop", name)
+        assert isinstance(definition, PropDef)
+        (row,) = [line for line in text.splitlines() if line.startswith(f"| `{name}` |")]
+        for word in (*(p.name for p in definition.parameters), *definition.spots):
+            assert re.search(rf"(?<![\w-]){word}(?![\w-])", row), (name, word)
+        assert ("*movable*" in row) == definition.movable
+    for word in COLOURS:
+        assert re.search(rf"(?<![\w-]){word}(?![\w-])", text), word
+    for name in CATALOG.names("set"):
+        assert f"`{name}`" in text
+
+
+def test_the_examples_of_the_reference_read() -> None:
+    blocks = re.findall(r"```vds\n(.*?)```", DOCS.read_text(encoding="utf-8"), re.DOTALL)
+    assert len(blocks) == 2
+    report = Report()
+    stool = parse_definition(Source("sets.md", blocks[0]), "prop", "stool", report)
+    flat = parse_definition(Source("sets.md", blocks[1]), "set", "flat", report)
+    assert stool is not None
+    assert flat is not None
+    assert read_prop(stool, report) is not None
+    found = read_set(flat, report)
+    assert found is not None
+    check_set(found, CATALOG, report)
+    assert not report.diagnostics

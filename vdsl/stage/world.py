@@ -49,7 +49,7 @@ Matrix = NDArray[np.float64]
 #: A prop put against a wall stands off it by this much, so that it does not sink into the skirting.
 OFF_WALL = 0.016
 #: The earth around an outdoor set reaches this far beyond it, metres.
-GROUND_REACH = 60.0
+GROUND_REACH = 22.0
 
 
 def build_world(

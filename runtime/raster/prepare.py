@@ -22,6 +22,7 @@ CLUSTER = 64  # triangles
 WELD = 1e-5  # metres
 FLAT = 1  # surface flag: the triangle's three normals are one
 MOVES = 2  # surface flag: skinned
+CLOSED = 4  # surface flag: its back is never seen
 SHIFT = 8  # flags sit above the material in info
 
 
@@ -31,7 +32,7 @@ class Prepared:
 
     vertices, normals: float32 [V, 3]; rest, rest_normals: float32 [K, 3]
     faces: int32 [F, 3] into both one after the other; color: float32 [F, 3] linear
-    info: int32 [F, 2]: surface index, material | flags << SHIFT
+    info: int32 [F, 3]: surface index, material | flags << SHIFT, wall or -1
     clusters: int32 [C, 4]: first triangle, count, cull, wall; moving_first: index of the first skinned one
     sphere: float32 [C, 4], bounds of the static ones
     surface_object: int32 [S]: object id of each surface, a surface being one part of one object
@@ -172,14 +173,19 @@ def prepare(scene: RenderScene, style: Style) -> Prepared:
     moving_clusters[:, 0] += len(order)
 
     object_ids = np.concatenate([scene.static_object[order], scene.skinned_object[moving_order]])
-    parts = np.concatenate([static.parts, skinned.parts])
+    # panes of glass and lamps are not divided by lines
+    clear = np.isin(static.materials, [MATERIALS.index("glass"), MATERIALS.index("glow")])
+    parts = np.concatenate([np.where(clear, -1, static.parts), skinned.parts])
     moves = np.repeat([0, 1], [len(order), len(moving_order)])
     surfaces, surface = np.unique(np.stack([moves, object_ids, parts], axis=1), axis=0, return_inverse=True)
     if len(surfaces) >= 0xFFFF:
         raise ValueError(f"RenderScene: {len(surfaces)} parts of objects; 65534 is the most")
     flags = np.concatenate([_flat(static) * FLAT, _flat(skinned) * FLAT + MOVES]).astype(np.int32)
+    flags += np.concatenate([static_cull[order], moving_cull[moving_order]]) * np.int32(CLOSED)
     materials = np.concatenate([static.materials, skinned.materials])
-    color = np.concatenate([quieted(to_linear(static.colors), style.quiet), to_linear(skinned.colors)])
+    wall = np.concatenate([scene.static_wall[order], none])
+    quiet = np.where(clear[:, None], to_linear(static.colors), quieted(to_linear(static.colors), style.quiet))
+    color = np.concatenate([quiet, to_linear(skinned.colors)])
     return Prepared(
         vertices=static.vertices,
         normals=static.normals,
@@ -187,7 +193,7 @@ def prepare(scene: RenderScene, style: Style) -> Prepared:
         rest_normals=skinned.normals,
         faces=np.concatenate([static.faces, skinned.faces + np.int32(len(static.vertices))]).astype(np.int32),
         color=color.astype(np.float32),
-        info=np.stack([surface.reshape(-1), materials | (flags << SHIFT)], axis=1).astype(np.int32),
+        info=np.stack([surface.reshape(-1), materials | (flags << SHIFT), wall], axis=1).astype(np.int32),
         clusters=np.concatenate([clusters, moving_clusters]).astype(np.int32),
         moving_first=len(clusters),
         sphere=_spheres(static, clusters),

@@ -48,6 +48,7 @@ class Renderer:
         self._table = self.backend.upload(table)
         self._linear = self.backend.upload(to_linear(np.arange(256) / 255.0).astype(np.float32))
         self._buffers: dict[str, Any] = {}
+        self.serial = self.backend.on_host  # one thread a view, no atomics
         self._scene: Prepared | None = None
 
     def load(self, scene: RenderScene) -> None:
@@ -261,28 +262,7 @@ class Renderer:
         picture = self._buffer("picture", (pixels,), np.uint32)
         edge = self._buffer("edge", (pixels,), np.uint32)
         view_, moment_, hidden_ = up(view), up(moment), up(hidden)
-        bands = 1 if views >= 2 * self.backend.threads else min(height, 2 * self.backend.threads)
-        seen = self._buffer("screen", (views, max(len(scene.rest), 1), 3), np.float32)
-        self._geometry.project(view_, moment_, self._position, len(scene.rest), views, seen)
-        self._geometry.raster_serial(
-            view_,
-            moment_,
-            hidden_,
-            a["vertices"],
-            self._position,
-            seen,
-            a["faces"],
-            a["clusters"],
-            a["sphere"],
-            self._ball,
-            scene.moving_first,
-            len(scene.vertices),
-            vis,
-            views,
-            width,
-            height,
-            bands,
-        )
+        self._rasterise(view_, moment_, hidden_, vis, size, views)
         self._shading.rows(
             view_,
             moment_,
@@ -342,6 +322,53 @@ class Renderer:
         )
         if objects is not None:
             self._finish.object_ids(edge, a["surface_object"], objects.reshape(-1), pixels)
+
+
+    def _rasterise(self, view: Any, moment: Any, hidden: Any, vis: Any, size: tuple[int, int], views: int) -> None:
+        """Fill the visibility buffers: a view or band a thread on the host, a triangle a thread elsewhere."""
+        scene, a = self._scene, self._arrays
+        assert scene is not None
+        width, height = size
+        if not self.serial:
+            self._geometry.clear(vis, views * width * height)
+            self._geometry.raster_atomic(
+                view,
+                moment,
+                hidden,
+                a["vertices"],
+                self._position,
+                a["faces"],
+                a["info"],
+                scene.static_faces,
+                len(scene.vertices),
+                vis,
+                views,
+                width,
+                height,
+            )
+            return
+        seen = self._buffer("screen", (views, max(len(scene.rest), 1), 3), np.float32)
+        self._geometry.project(view, moment, self._position, len(scene.rest), views, seen)
+        bands = 1 if views >= 2 * self.backend.threads else min(height, 2 * self.backend.threads)
+        self._geometry.raster_serial(
+            view,
+            moment,
+            hidden,
+            a["vertices"],
+            self._position,
+            seen,
+            a["faces"],
+            a["clusters"],
+            a["sphere"],
+            self._ball,
+            scene.moving_first,
+            len(scene.vertices),
+            vis,
+            views,
+            width,
+            height,
+            bands,
+        )
 
 
 def pack_views(camera: Camera, count: int, width: int, height: int) -> NDArray[np.float32]:

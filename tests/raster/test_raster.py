@@ -265,3 +265,17 @@ def test_empty_scenes_and_batches() -> None:
 def test_importing_the_package_does_not_load_taichi() -> None:
     code = "import sys, runtime.raster, runtime.raster.renderer; assert 'taichi' not in sys.modules"
     subprocess.run([sys.executable, "-c", code], check=True)
+
+
+def test_both_ways_of_filling_agree() -> None:
+    # the one with atomics is for GPUs; it walks the same spans
+    s, views = small(), looking(EYES, AIMS, focal=24, walls=1)
+    alone = draw(s, views)
+    r = renderer(PLAIN)
+    r.serial = False
+    try:
+        shared = draw(s, views)
+    finally:
+        r.serial = True
+    np.testing.assert_array_equal(alone.ids, shared.ids)
+    np.testing.assert_array_equal(alone.color, shared.color)

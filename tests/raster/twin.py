@@ -11,7 +11,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from runtime.raster.prepare import quieted, to_encoded, to_linear
+from runtime.raster.film import exposed, to_encoded, to_linear, unexposed
+from runtime.raster.prepare import quieted
 from runtime.raster.types import RenderScene, Views
 
 NEAR = 0.03
@@ -27,9 +28,7 @@ class Traced:
     sure: NDArray[np.bool_]
 
 
-def trace(
-    scene: RenderScene, views: Views, n: int, size: tuple[int, int], quiet: float, linear_light: bool = True
-) -> Traced:
+def trace(scene: RenderScene, views: Views, n: int, size: tuple[int, int], quiet: float) -> Traced:
     """Cast one ray through the centre of each pixel of view ``n`` (unskinned positions)."""
     width, height = size
     cam = views.camera
@@ -43,7 +42,9 @@ def trace(
     color = np.zeros((height, width, 3))
     sure = np.ones((height, width), bool)
     light = scene.light
-    horizon, zenith = to_linear(np.array(light.backdrop))
+    horizon, zenith = unexposed(to_linear(np.array(light.backdrop)))
+    fill = axes[1] * 0.6 - axes[0] * 0.62 - axes[2] * 0.5
+    fill /= np.linalg.norm(fill)
     up = rays[..., 2] / np.linalg.norm(rays, axis=-1)
     color[:] = horizon + (zenith - horizon) * np.clip(up * 1.6, 0, 1)[..., None]
     for mesh, owner, walls, still in (
@@ -86,7 +87,12 @@ def trace(
             ambient = np.array(light.ground) + (np.array(light.sky) - np.array(light.ground)) * (
                 n3[:, 2:] * 0.5 + 0.5
             )
-            lit = base[f] * (ambient + np.array(light.sun_color) * np.maximum(n3 @ np.array(light.sun), 0)[:, None])
+            key = np.maximum(n3 @ np.array(light.sun), 0)
+            if still:
+                key = 0.3 + 0.7 * key
+            else:
+                key = 0.08 + 0.92 * np.maximum(key, 0.42 * np.maximum(n3 @ fill, 0))
+            lit = base[f] * (ambient + np.array(light.sun_color) * key[:, None])
             haze = np.clip((z[nearer] - 2.0) * 0.04, 0, 1)[:, None] * (0.36 if still else 0.15)
             color[nearer] = lit + (horizon - lit) * haze
-    return Traced(depth, ids, to_encoded(color) * 255 if linear_light else color, sure)
+    return Traced(depth, ids, to_encoded(exposed(color)) * 255, sure)

@@ -13,6 +13,7 @@ from .geometry import f1, f2, i1, u8s, u32s, u64s, vec3
 from .shading import NOTHING, encode, unpack_normal
 
 i32s = ti.types.ndarray(ti.i32, ndim=1)
+TOUCH = 0.04  # metres
 SEARCH = 12  # pixels looked along an edge, either way
 
 
@@ -60,8 +61,10 @@ def line_weight(e, f, w, w_f, w_back, first_moving, owner: ti.template()):
         if f == ti.u32(NOTHING):
             out = 1.0 if moves else 0.6
         elif owner[s] != owner[s_f]:
-            if (w > w_f and ti.abs(w - w_f) > 1e-3 * w * w) or (ti.abs(w - w_f) <= 1e-3 * w * w and s > s_f):
-                out = 1.0 if moves else (0.6 if gap > allowed else 0.45)
+            # the nearer side; where the two touch, always the same one, or the line would jump across
+            touching = ti.abs(w - w_f) < TOUCH * w * w
+            if (touching and s > s_f) or (not touching and w > w_f):
+                out = 1.0 if moves else (0.45 if touching else 0.6)
         elif gap > allowed:
             out = 0.95 if moves else 0.5
         elif s > s_f and gap > -allowed:
@@ -198,7 +201,7 @@ def finish_kernels(style: Style) -> SimpleNamespace:
             w, e = luma(src[at - 1]), luma(src[at + 1])
             low = ti.min(m, n, s, w, e)
             high = ti.max(m, n, s, w, e)
-            if high - low > 10 + high // 16:
+            if high - low > 8 + high // 20:
                 nw, ne = luma(src[at - width - 1]), luma(src[at - width + 1])
                 sw, se = luma(src[at + width - 1]), luma(src[at + width + 1])
                 flat = ti.abs(nw - 2 * w + sw) + 2 * ti.abs(n - 2 * m + s) + ti.abs(ne - 2 * e + se)

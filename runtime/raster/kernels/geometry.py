@@ -9,7 +9,7 @@ walked from their upper end, so triangles that share one agree on it to the last
 import taichi as ti
 
 NEAR = 0.03  # metres
-VIEW = 16  # floats a view: position, right, up, forward, scale x, scale y, half width, half height
+STRIPS = 8  # interleaved rows a triangle is shared by
 vec3 = ti.types.vector(3, ti.f32)
 
 f1 = ti.types.ndarray(ti.f32, ndim=1)
@@ -108,7 +108,8 @@ def fill(vis: ti.template(), exact: ti.template(), base, width, y_from, y_to, y_
             b, c = c, b
         if a.y > b.y:
             a, b = b, a
-        y0 += (y_from - y0) % y_step if ti.static(not exact) else 0
+        if ti.static(not exact):
+            y0 += (y_from - y0 % y_step + y_step) % y_step
         ab = b - a
         ac = c - a
         bc = c - b
@@ -315,3 +316,67 @@ def raster_serial(
                         if j == 1:
                             sb, sc = sc, sd
                         fill(vis, True, base, width, y_from, y_to, 1, ti.cast(t + 1, ti.u64), sa, sb, sc)
+
+
+@ti.kernel
+def clear(vis: u64s, count: ti.i32):
+    for i in range(count):
+        vis[i] = ti.u64(0)
+
+
+@ti.kernel
+def raster_atomic(
+    view: f2,
+    moment: i1,
+    hidden: i2,
+    vertices: f2,
+    position: f3,
+    faces: i2,
+    info: i2,
+    static_faces: ti.i32,
+    static_vertices: ti.i32,
+    vis: u64s,
+    views: ti.i32,
+    width: ti.i32,
+    height: ti.i32,
+):
+    """Fill cleared visibility buffers, STRIPS threads a triangle and view, for machines of many threads.
+
+    info [F, 3]: anything, flags << 8, wall
+    """
+    for i in range(views * faces.shape[0] * STRIPS):
+        strip = i % STRIPS
+        t = (i // STRIPS) % faces.shape[0]
+        n = i // (STRIPS * faces.shape[0])
+        shown = True
+        if info[t, 2] >= 0:
+            shown = hidden[n, info[t, 2]] == 0
+        if shown:
+            eye = part3(view, n, 0)
+            right = part3(view, n, 3)
+            up = part3(view, n, 6)
+            forward = part3(view, n, 9)
+            m = moment[n]
+            p0, p1, p2 = vec3(0), vec3(0), vec3(0)
+            if t >= static_faces:
+                p0 = item3(position, m, faces[t, 0] - static_vertices) - eye
+                p1 = item3(position, m, faces[t, 1] - static_vertices) - eye
+                p2 = item3(position, m, faces[t, 2] - static_vertices) - eye
+            else:
+                p0 = row3(vertices, faces[t, 0]) - eye
+                p1 = row3(vertices, faces[t, 1]) - eye
+                p2 = row3(vertices, faces[t, 2]) - eye
+            pieces, sa, sb, sc, sd = cut(
+                (info[t, 1] >> 10) & 1 != 0,
+                ti.Vector([view[n, 12], view[n, 13]]),
+                ti.Vector([view[n, 14], view[n, 15]]),
+                vec3(right.dot(p0), up.dot(p0), forward.dot(p0)),
+                vec3(right.dot(p1), up.dot(p1), forward.dot(p1)),
+                vec3(right.dot(p2), up.dot(p2), forward.dot(p2)),
+            )
+            for j in range(pieces):
+                if j == 1:
+                    sb, sc = sc, sd
+                fill(
+                    vis, False, n * height * width, width, strip, height, STRIPS, ti.cast(t + 1, ti.u64), sa, sb, sc
+                )

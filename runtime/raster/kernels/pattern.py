@@ -135,4 +135,4 @@ def glazed(base, ray, p):
     band = (p.x + p.y) * 0.8 + p.z * 1.1
     t = band - ti.floor(band)
     streak = 0.10 if (t < 0.16 or 0.24 < t < 0.30) else 0.0
-    return base * 0.7 + vec3(0.78, 0.84, 0.88) + 2.0 * streak
+    return base * 1.5 + vec3(0.10, 0.12, 0.13) + 2.0 * streak

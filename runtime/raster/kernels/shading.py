@@ -186,6 +186,8 @@ def shading_kernels(style: Style) -> SimpleNamespace:
             )
             sun = vec3(light[0], light[1], light[2])
             sun_color = vec3(light[3], light[4], light[5])
+            # people get a weaker light from over the camera's left shoulder, so that a back-lit face has form
+            fill = (part3(view, n, 6) * 0.6 - part3(view, n, 3) * 0.62 - part3(view, n, 9) * 0.5).normalized()
             sky = vec3(light[6], light[7], light[8])
             under = vec3(light[9], light[10], light[11])
             horizon = vec3(light[12], light[13], light[14])
@@ -362,7 +364,8 @@ def shading_kernels(style: Style) -> SimpleNamespace:
                                         key_light *= lit(q, 0, set_frame, set_size, set_depth, set_coarse)
                                 albedo = base
                                 if moves:
-                                    out = albedo * (ambient + sun_color * (0.1 + 0.9 * key_light))
+                                    key_light = ti.max(key_light, 0.42 * toned(nn.dot(fill)))
+                                    out = albedo * (ambient + sun_color * (0.08 + 0.92 * key_light))
                                 else:
                                     if material != 0:
                                         albedo *= tone * pattern(material, where, nn, depth * slant)
@@ -381,7 +384,7 @@ def shading_kernels(style: Style) -> SimpleNamespace:
     def sheltered(where, nn, m, corner, inverse, nx, ny, nz, values: ti.template(), floor: ti.template(), columns, rows, ground: ti.template()):
         """Share of the ambient light that reaches a point of the set."""
         near = area_near(where + nn * 0.24, corner, inverse, nx, ny, nz, values)
-        out = 1.0 - 0.34 * (1.0 - ti.exp(-1.3 * ti.max(near - 0.38, 0.0)))
+        out = 1.0 - 0.27 * (1.0 - ti.exp(-1.3 * ti.max(near - 0.38, 0.0)))
         if nn.z > 0.7 and where.z < 0.2:
             out *= 1.0 - 0.5 * (1.0 - ti.exp(-1.6 * standing_near(where, m, floor, columns, rows, ground)))
         return out

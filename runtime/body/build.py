@@ -134,7 +134,7 @@ def _normals(figure: Figure, piece: Piece) -> NDArray[np.float64]:
             np.add.at(total, piece.patch.faces[:, b], normals[piece.patch.faces[:, a]])
         total[seam, 1] = 0.0
         normals = _unit(total)
-    if piece.rule == "face" and piece.part in ("skin", "mouth"):
+    if piece.rule == "face" and piece.part == "skin":
         normals = _unit(normals + _oval(figure, piece.patch.vertices))
     return normals
 

@@ -15,7 +15,6 @@ from scipy.interpolate import PchipInterpolator
 from .anatomy import Figure, neck, shoulders, torso_loft
 from .field import Field, Points, Values, carve, ellipsoid, round_cone, smooth_min, union
 
-
 #: Styles that fall over the ears.
 EARS_COVERED = ("bob", "long")
 

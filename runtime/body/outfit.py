@@ -31,7 +31,7 @@ def sleeve(f: Figure, grow: float, end: float, flare: float = 0.0) -> Field:
 
 
 def along_arm(f: Figure, end: float) -> Field:
-    """Cut across the left arm: negative above ``end`` metres from the shoulder; everything near the trunk is."""
+    """Cut across the left arm: negative above ``end`` metres from the shoulder, and near the trunk."""
     origin = f.joint("upperarm_l")
 
     def field(p: Points) -> Values:
@@ -193,9 +193,11 @@ def _collar(f: Figure, colour: Colour, drop: float = 1.0) -> list[Piece]:
         up = dz - (0.022 * h - 0.42 * dx)
         front = np.clip(dx / (0.04 * h), 0.0, 1.5)
         tip = 0.024 * h * drop * front * np.exp(-(((y - 0.027 * h) / (0.015 * h)) ** 2))
-        down = -0.035 * h - 0.30 * np.clip(dx, 0.0, 1.0) * drop - tip - dz
+        low = 0.035 * h if drop >= 1.0 else 0.020 * h
+        down = -low - 0.30 * np.clip(dx, 0.0, 1.0) * drop - tip - dz
         open_ = np.where(dx > 0, 0.004 * h + np.maximum(0.010 * h - 0.35 * dx - dz, 0.0) * 0.75 - y, -1.0)
-        return np.maximum(np.maximum(up, down), open_)
+        wide = y - (0.16 if drop >= 1.0 else 0.047) * h
+        return np.maximum(np.maximum(np.maximum(up, down), open_), wide)
 
     patch = polygonise(
         solid, (x - 0.1 * h, -0.03, z - 0.10 * h), (x + 0.12 * h, 0.1 * h, z + 0.05 * h), 0.0045
@@ -224,7 +226,9 @@ def _blazer(f: Figure, hem_level: float = -0.22, skirt: float = 0.0) -> list[Pie
         body, tail = solid, _tail(f, hem)
         solid = lambda p: smooth_min(body(p), tail(p), 0.05 * h)  # noqa: E731
     patch = _surface(f, solid, hem - 0.04 * h, f.level(1.35), True, 950)
-    patch = clip(patch, both(both(above(hem, 0.05), along_arm(f, end)), neckline(f, 0.030 * h, 0.004 * h)))
+    patch = clip(
+        patch, both(both(above(hem, 0.05), along_arm(f, end)), neckline(f, 0.030 * h, -0.003 * h, 0.012 * h))
+    )
     button = f.level(0.36)
     opening, lapel = _front(f, button, 0.0), _front(f, button, 0.042 * h)
     cloth = Piece(clip(patch, opening, keep_outside=True), f.spec.top_color, "top", solid, material="cloth")

@@ -12,7 +12,7 @@ from .surface import Patch, compact, mirror, rim, split
 
 #: Part labels: the ink line runs where they change.
 PARTS = (
-    "skin", "mouth", "eye", "lash", "hair", "top", "trim", "shirt", "bottom", "belt", "shoes", "sole", "glasses",
+    "skin", "eye", "hair", "top", "trim", "shirt", "bottom", "belt", "shoes", "sole", "glasses",
 )  # fmt: skip
 
 

@@ -109,7 +109,7 @@ def split(patch: Patch, cut: Field) -> tuple[Patch, Patch]:
     nothing opens between them.
     """
     values = _off_zero(cut(patch.vertices))
-    edges, position, value = _border(patch, cut, values)
+    edges, position = _border(patch, cut, values)
     vertices = np.concatenate([patch.vertices, position])
     index = {}
     for k, (a, b) in enumerate(edges.tolist()):
@@ -136,7 +136,7 @@ def _off_zero(values: Values) -> Values:
     return np.where(np.abs(values) < 2e-4, np.where(values < 0, -2e-4, 2e-4), values)
 
 
-def _border(patch: Patch, cut: Field, values: Values) -> tuple[NDArray[np.int64], Points, Values]:
+def _border(patch: Patch, cut: Field, values: Values) -> tuple[NDArray[np.int64], Points]:
     pairs = np.sort(
         np.concatenate([patch.faces[:, [0, 1]], patch.faces[:, [1, 2]], patch.faces[:, [2, 0]]]), axis=1
     )
@@ -154,7 +154,7 @@ def _border(patch: Patch, cut: Field, values: Values) -> tuple[NDArray[np.int64]
         step = f0 - f1
         t = np.where(np.abs(step) > 1e-9, t0 + (t1 - t0) * f0 / np.where(np.abs(step) > 1e-9, step, 1.0), t)
     t = np.clip(t, 0.02, 0.98)
-    return pairs, a + (b - a) * t[:, None], t
+    return pairs, a + (b - a) * t[:, None]
 
 
 def compact(patch: Patch) -> Patch:

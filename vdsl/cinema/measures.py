@@ -228,6 +228,8 @@ def _foreground(
         + half * track.sensor[1] * looks[:, 1:] * ax[..., 1, :]
     )
     seen = clear_lines(world.solids, camera[:, some], points, hidden, takes.ignore)
+    others = [(foot[at[some]], crown[at[some]], radius) for foot, crown, radius in takes.others]
+    seen &= clear_of_people(camera[:, some], points, others)
     return np.asarray(1.0 - seen.mean(axis=(1, 2)))
 
 

@@ -150,16 +150,17 @@ def _cut(solids: Solids, box: NDArray[np.int64], camera: Array, points: Array) -
 def clear_of_people(camera: Array, points: Array, bodies: list[tuple[Array, Array, float]]) -> Bools:
     """Whether lines pass everybody else: bodies are (foot [F, 3], crown [F, 3], radius) pillars.
 
-    camera: [P, F, 3]; points: [F, K, 3] -> bool [P, F, K]
+    camera: [P, F, 3]; points: [F, K, 3] or [P, F, K, 3] -> bool [P, F, K]
     """
-    seen = np.ones((*camera.shape[:2], points.shape[1]), bool)
+    ends = points[None] if points.ndim == 3 else points
+    seen = np.ones((*camera.shape[:2], points.shape[-2]), bool)
     for foot, crown, radius in bodies:
         eye = camera[:, :, None, :2]
-        ray = points[None, :, :, :2] - eye
+        ray = ends[..., :2] - eye
         start = foot[None, :, None, :2] - eye
         square = np.maximum((ray**2).sum(-1), 1e-9)
         t = np.clip((start * ray).sum(-1) / square, 0.0, 1.0)
         away = np.linalg.norm(start - t[..., None] * ray, axis=-1)
-        height = camera[:, :, None, 2] + t * (points[None, :, :, 2] - camera[:, :, None, 2])
+        height = camera[:, :, None, 2] + t * (ends[..., 2] - camera[:, :, None, 2])
         seen &= ~((away < radius) & (height < crown[None, :, None, 2]) & (t < 0.97))
     return seen

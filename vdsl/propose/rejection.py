@@ -90,14 +90,16 @@ def reasons(shooting: Shooting, measured: Measured, subject: Subject) -> NDArray
     paper = shooting.rig == "paper"
     own = np.linalg.norm(track.position - subject.landmarks["eyes"][None], axis=-1).min(axis=1)
     moving = np.array([family(m) in ("push", "pull", "zoom", "tilt", "pan") for m in shooting.movements])
+    keeps = np.array([family(m) in ("follow", "arc") for m in shooting.movements])
     drift = np.where(moving, 0.0, v["size_drift"])
+    holds = np.where(keeps & (not paper), 0.45, 0.9)
     walked = float(np.linalg.norm(np.diff(subject.position, axis=0), axis=1).sum())
     asked = {
         "in_wall": measured.shown < _NEAR_WALL * _arm(shooting),
         "in_person": (measured.people < _NEAR_PERSON) | ((own < _NEAR_FACE) & (subject.kind == "person")),
-        "subject_out_of_frame": v["in_frame"] < (0.5 if walked > 0.5 else 0.7),
+        "subject_out_of_frame": v["in_frame"] < np.where(keeps, 0.85, 0.5 if walked > 0.5 else 0.7),
         "subject_hidden": (v["visibility"] < 0.6) | (v["head_visible"] < 0.5) | (v["foreground"] > 0.5),
-        "wrong_size": (v["size_error"] > (0.6 if paper else 0.25)) | (drift > 0.9),
+        "wrong_size": (v["size_error"] > (0.6 if paper else 0.25)) | (drift > holds),
         "wrong_angle": _wrong_angle(shooting, v["elevation"]),
         "too_fast": (v["speed"] > _FASTEST) | (v["angular_speed"] > _TURNS),
         "missing_backdrop": v["backdrop_gap"] > 0.12,

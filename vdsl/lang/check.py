@@ -10,22 +10,19 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from pathlib import PurePath
 
-from . import ast, words
+from . import ast
 from .beats import BeatReader, resolve, unknown_character
 from .catalog import CatalogLike
-from .definitions.types import DefinitionBase, SetNode
-from .diagnostics import Report, listing, nearest
-from .evaluate import evaluate_arguments
+from .diagnostics import Report, listing
 from .files import used_scripts
 from .ids import Ids
 from .ir import Beat, Character, Placement, Scene, Storyboard, StoryLine, Target
-from .scope import ROOMS, Scope, node_at, walk
+from .lookup import Lookup, Setting
+from .scope import Scope
 from .settings import Settings, read_header
 from .shots import DEFAULT_PROPOSALS, DEFAULT_STYLE, DEFAULT_TAKES, Defaults, LineContext, read_shots
 from .source import Span
 from .transitions import Joins
-
-SHORTEST_PERSON, TALLEST_PERSON = 0.7, 2.4
 
 
 def check(
@@ -68,6 +65,7 @@ class _Checker:
         self.lines: list[StoryLine] = []
         self.ids = Ids()
         self.joins = Joins(report)
+        self.lookup = Lookup(catalog, report)
 
     # -- the whole -------------------------------------------------------------------
 
@@ -202,50 +200,7 @@ class _Checker:
                 notes=[(self.characters[name].span, "the first one")],
             )
             return
-        if isinstance(line.cast, ast.Text):
-            self.report.error(
-                "VDS017",
-                line.cast.span,
-                label="characters from files are not read yet",
-                help=f"take one of the library's: {listing(self.catalog.names('cast'))}",
-            )
-            self.characters[name] = Character(name, "", (), line.span)
-            return
-        callee = line.cast.callee if isinstance(line.cast, ast.Call) else line.cast
-        arguments: dict[str, float | str] = {}
-        cast = self._definition("cast", callee)
-        if cast is not None and isinstance(line.cast, ast.Call):
-            arguments = evaluate_arguments(line.cast.arguments, cast.parameters, {}, self.report, callee.text)
-            self._height(line.cast, arguments)
-        self.characters[name] = Character(name, callee.text, tuple(arguments.items()), line.span)
-
-    def _height(self, call: ast.Call, arguments: dict[str, float | str]) -> None:
-        height = arguments.get("height")
-        if isinstance(height, float) and not SHORTEST_PERSON <= height <= TALLEST_PERSON:
-            span = next(a.span for a in call.arguments if a.name.text == "height")
-            self.report.error(
-                "VDS067",
-                span,
-                label=f"nobody is {height:g}m tall",
-                help=f"from {SHORTEST_PERSON:g}m to {TALLEST_PERSON:g}m",
-            )
-
-    def _definition(self, kind: str, name: ast.Name) -> DefinitionBase | None:
-        """A definition by name; an unknown one is reported."""
-        names = self.catalog.names(kind)
-        if name.text in names:
-            return self.catalog.get(kind, name.text)
-        meant = nearest(name.text, names)
-        what = {"cast": "cast member", "set": "set"}[kind]
-        self.report.error(
-            "VDS064" if kind == "cast" else "VDS062",
-            name.span,
-            label=f"no {what} is called `{name.text}`",
-            help=f"there are {listing(names, 20, last='and')}",
-            suggestion=meant,
-            fix=meant,
-        )
-        return None
+        self.characters[name] = self.lookup.character(line)
 
     # -- scenes ----------------------------------------------------------------------
 
@@ -254,78 +209,24 @@ class _Checker:
         if len(line.name.parts) > 1 and line.set is not None:
             self.report.error("VDS063", line.name.span, label="a scene's name has no dots")
         earlier = next((s for s in self.scenes if s.name == line.name.text), None)
-        time = self._time(line.time)
-        written = line.set or line.name
+        time = self.lookup.time(line.time)
         if line.set is None and earlier is not None:
-            set_name, room, default = earlier.set, earlier.room, earlier.time
-            root = getattr(self.catalog.get("set", set_name), "root", None)
+            root = getattr(self.catalog.get("set", earlier.set), "root", None)
+            found = Setting(earlier.set, earlier.room, earlier.time, root)
         else:
-            set_name, room, default, root = self._set(written)
-        scope = Scope(root, room, self.catalog) if root is not None else None
+            found = self.lookup.setting(line.set or line.name)
+        scope = Scope(found.root, found.room, self.catalog) if found.root is not None else None
         name = line.name.parts[-1] if line.set is None else line.name.text
-        members = self._members(index)
         self.stage = _Stage(
-            len(self.scenes), name, set_name, room, time or default, scope, members, line.span
+            index=len(self.scenes),
+            name=name,
+            set_name=found.set_name,
+            room=found.room,
+            time=time or found.time,
+            scope=scope,
+            members=self._members(index),
+            span=line.span,
         )
-
-    def _time(self, time: ast.Name | None) -> str | None:
-        if time is None or time.text in words.TIMES:
-            return time.text if time else None
-        meant = nearest(time.text, words.TIMES)
-        self.report.error(
-            "VDS063",
-            time.span,
-            label=f"`{time.text}` is no time of day",
-            help=f"it may be {listing(words.TIMES)}",
-            suggestion=meant,
-            fix=meant,
-        )
-        return None
-
-    def _set(self, written: ast.Name) -> tuple[str, tuple[str, ...], str, SetNode | None]:
-        """Name, room, time of day and tree of the set a scene is in."""
-        name = ast.Name(
-            written.parts[:1],
-            Span(written.span.source, written.span.start, written.span.start + len(written.parts[0])),
-        )
-        if name.text not in self.catalog.names("set") and (near := self._room_elsewhere(written)):
-            self.report.error(
-                "VDS062",
-                written.span,
-                label=f"no set is called `{written.text}`",
-                help="say which set the room is in",
-                suggestion=near,
-                fix=near,
-            )
-            return name.text, (), "day", None
-        definition = self._definition("set", name)
-        root: SetNode | None = getattr(definition, "root", None)
-        time = str(getattr(definition, "time", "day"))
-        if root is None:
-            return name.text, (), time, None
-        room = written.parts[1:]
-        node = node_at(root, room)
-        if node is None or node.kind not in ROOMS:
-            rooms = [".".join((root.name, *path)) for path, each in walk(root) if each.kind in ROOMS and path]
-            meant = nearest(written.text, rooms)
-            self.report.error(
-                "VDS062",
-                written.span,
-                label=f"`{name.text}` has no room `{'.'.join(room)}`",
-                help=f"it has {listing(rooms, last='and')}" if rooms else "it has no rooms",
-                suggestion=meant,
-                fix=meant,
-            )
-            return name.text, (), time, None
-        return name.text, room, time, root
-
-    def _room_elsewhere(self, written: ast.Name) -> str | None:
-        """The full name of a room that was named without its set."""
-        for name in self.catalog.names("set"):
-            root = getattr(self.catalog.get("set", name), "root", None)
-            if root is not None and (node := node_at(root, written.parts)) is not None and node.kind in ROOMS:
-                return ".".join((name, *written.parts))
-        return None
 
     def _members(self, index: int) -> tuple[str, ...]:
         """Everyone placed or named until the next scene: those placed first, then in order."""

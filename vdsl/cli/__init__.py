@@ -6,12 +6,15 @@ Importing a verb's module imports no more than that verb needs, so that ``vdsc -
 
 from __future__ import annotations
 
+from typing import Annotated
+
 import typer
 
 from .bench import bench
 from .check import check
 from .compile import compile_command
 from .explain import explain
+from .train import train
 
 app = typer.Typer(
     name="vdsc",
@@ -23,7 +26,25 @@ app = typer.Typer(
 app.command("compile")(compile_command)
 app.command()(check)
 app.command()(explain)
+app.command()(train)
 app.command()(bench)
+
+
+def _version(wanted: bool) -> None:
+    if wanted:
+        from .. import __version__
+
+        print(f"vdsc {__version__}")
+        raise typer.Exit
+
+
+@app.callback()
+def _common(
+    version: Annotated[
+        bool, typer.Option("--version", callback=_version, is_eager=True, help="Print the version.")
+    ] = False,
+) -> None:
+    """Turn a written storyboard into ranked moving shots."""
 
 
 def main() -> None:

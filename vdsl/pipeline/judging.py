@@ -56,4 +56,5 @@ class DiscriminatorJudge:
     def scores(self, cameras: tuple[CameraProposal, ...], frames: NDArray[np.uint8] | None) -> NDArray[np.float64]:
         if frames is None:
             raise ValueError("the discriminator judges by frames")
-        return self._ranker.score(frames).professional.astype(np.float64)
+        # From the logit: p_b itself runs out of digits near 1.
+        return np.asarray(1.0 / (1.0 + np.exp(-self._ranker.score(frames).margin.astype(np.float64))))

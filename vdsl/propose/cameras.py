@@ -31,7 +31,7 @@ from .rejection import REASONS, SOFT, no_room, reasons
 from .shooting import Shooting, shoot
 from .types import STILL, CameraProposal, ProposalGrid, StoryProposal
 
-_ROUNDS = 5
+_ROUNDS = 8
 _FEW = 8  # with fewer takes than this, ones that only look less well are let back in
 _MARGIN = 0.22  # radius of a person in somebody else's way, metres
 
@@ -80,8 +80,8 @@ def propose_cameras(shot: Shot, stories: Sequence[StoryProposal], filming: Filmi
     rejected: Counter[str] = Counter()
     considered, good, wanted = 0, 0, shot.proposals
     for number in range(_ROUNDS):
-        share = max(good / considered, 0.08) if considered else 0.75
-        count = int(np.clip((wanted - good) / share, 16, 5 * wanted))
+        share = max(0.9 * good / considered, 0.05) if considered else 0.75
+        count = int(np.clip((wanted - good) / share, 16, 6 * wanted))
         rng = generator(filming.seed, shot.id, f"cameras {number}")
         considered += count
         for batch in _consider(shot, stories, subjects, filming, count, rng, rejected):

@@ -27,6 +27,7 @@ class Action(DefinitionBase):
     target: str = "none"
     target_kinds: tuple[str, ...] = ()
     second: str = "none"
+    second_kinds: tuple[str, ...] = ()
     travels: bool = False
 
 
@@ -114,7 +115,9 @@ class SmallCatalog:
         for root in (APARTMENT, STREET):
             self._all["set", root.name] = Set(root.name, (), NOWHERE, root)
         for name, (target, kinds, second) in ACTIONS.items():
-            self._all["action", name] = Action(name, (), NOWHERE, target, kinds, second)
+            self._all["action", name] = Action(
+                name, (), NOWHERE, target, kinds, second, ("character",) if name == "give" else ()
+            )
         for name in ("woman", "man"):
             self._all["cast", name] = DefinitionBase(name, PERSON, NOWHERE)
 

@@ -174,6 +174,16 @@ class BeatReader:
                 "VDS073", named[1].span, label=f"`{action}` takes no second target", help="leave it out"
             )
             return False
+        also: tuple[str, ...] = tuple(getattr(definition, "second_kinds", ()))
+        if len(named) == 2 and also and not _kind_fits(named[1], also):
+            second_words = " or ".join(_KIND_WORDS.get(kind, kind) for kind in also)
+            self.report.error(
+                "VDS074",
+                named[1].span,
+                label=f"the second target of `{action}` is {second_words}",
+                help=f"`{named[1].written}` is {_is(named[1])}",
+            )
+            return False
         if named and kinds and not _kind_fits(named[0], kinds):
             self.report.error(
                 "VDS074",

@@ -215,6 +215,14 @@ class _Checker:
             found = Setting(earlier.set, earlier.room, earlier.time, root)
         else:
             found = self.lookup.setting(line.set or line.name)
+        if earlier is not None and (earlier.set, earlier.room) != (found.set_name, found.room):
+            self.report.error(
+                "VDS063",
+                line.name.span,
+                label=f"a scene `{line.name.text}` was somewhere else",
+                help="give this one another name",
+                notes=[(earlier.span, "the first one")],
+            )
         scope = Scope(found.root, found.room, self.catalog) if found.root is not None else None
         name = line.name.parts[-1] if line.set is None else line.name.text
         self.stage = _Stage(
@@ -291,7 +299,7 @@ class _Checker:
             at = resolve(line.at, (), stage.scope, self.report)
         facing = None
         if line.facing is not None:
-            facing = resolve(line.facing, tuple(self.characters), stage.scope, self.report)
+            facing = self._someone_or_something(line.facing, stage)
         if (
             at is not None
             and posture == "sitting"
@@ -310,6 +318,19 @@ class _Checker:
             )
         free = Target("free", (), "", line.span)
         stage.placements[name] = Placement(name, at or free, facing, posture, line.span)
+
+    def _someone_or_something(self, name: ast.Name, stage: _Stage) -> Target | None:
+        """What a camera is on, or someone faces: a character of this scene, or something in it."""
+        target = resolve(name, tuple(self.characters), stage.scope, self.report)
+        if target is not None and target.kind == "character" and target.path[0] not in stage.members:
+            self.report.error(
+                "VDS077",
+                name.span,
+                label=f"{name.text} is not in scene {stage.name}",
+                help=f"place them first, as in `{name.text} at NAME`",
+            )
+            return None
+        return target
 
     def _seat(self, at: Target, scope: Scope) -> bool:
         return at.kind not in ("free", "character") and scope.has_seat(at)
@@ -341,7 +362,7 @@ class _Checker:
             stage.name,
             done,
             self._subject(done, stage),
-            lambda name: resolve(name, names, stage.scope, self.report),
+            lambda name: self._someone_or_something(name, stage),
         )
         shots = read_shots(node, context, self.defaults, self.ids, self.report)
         self.lines.append(StoryLine(stage.index, done, shots, self.joins.give(), node.span))

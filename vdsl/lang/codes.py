@@ -451,6 +451,13 @@ CODES: dict[str, Code] = {
         "(anna walk) + (anna wave)",
         "(anna walk) + (ben wave)",
     ),
+    "VDS077": Code(
+        "someone who is not in the scene",
+        "The camera can only be on, and people can only face, who is in the scene: who is placed in it, or does "
+        "something in it.",
+        "(anna walk) focus carl",
+        "carl at counter\n(anna walk) focus carl",
+    ),
     "VDS078": Code(
         "transition without two sides",
         "A transition stands between two story lines and joins them in one way. A film may begin with a fade-in and "

@@ -21,7 +21,7 @@ SHORTEST_PERSON, TALLEST_PERSON = 0.7, 2.4
 
 @dataclass(frozen=True)
 class Setting:
-    """The set a scene is in: its name, the room's path, the set's time of day; ``root`` is None where unknown."""
+    """The set a scene is in: its name, the room's path, the set's time of day; ``root``: None if unknown."""
 
     set_name: str
     room: tuple[str, ...]

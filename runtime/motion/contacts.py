@@ -12,13 +12,13 @@ from runtime.body.skeleton import JOINT, Skeleton
 from .curves import plateau, ramp
 from .figure import Figure
 from .rotations import rot_x, rot_y, rot_z, wrap
-from .types import PropState, Reach
+from .types import Reach
 
 Array = NDArray[np.float64]
 SIDE = {"l": 0, "r": 1}
 #: Places on one's own body: joint, and how the palm lies there: fingers inward, fingers up, thumb over.
 _LIE: dict[str, tuple[float, float, float]] = {
-    "mouth": (1.25, 0.35, 0.0), "ear": (0.15, 1.7, 0.0), "chin": (0.75, 0.95, 0.2), "chest": (1.2, 0.15, 0.0),
+    "mouth": (1.05, 0.75, 0.0), "ear": (0.2, 1.5, 0.0), "chin": (0.75, 0.95, 0.2), "chest": (1.2, 0.15, 0.0),
     "hip": (1.0, -0.45, 0.5), "head": (0.8, 1.1, 0.9), "heart": (1.3, 0.2, 0.0), "belly": (1.3, 0.0, 0.0),
     "eyes": (1.1, 0.8, 0.0), "elbow": (1.4, 0.1, 0.2), "lap": (0.35, -0.15, 1.35), "front": (0.25, 0.0, 0.0),
 }  # fmt: skip
@@ -33,7 +33,7 @@ def body_place(figure: Figure, place: str, hand: int, yaw: Array) -> Array:
     mouth_z = bind[JOINT["mouth_l"]][2] - bind[JOINT["head"]][2]
     on_head = {
         "mouth": (1.42 * eye[0], 0.0, mouth_z),
-        "ear": (0.15 * eye[0], m * 2.75 * eye[1], 0.75 * eye[2]),
+        "ear": (0.45 * eye[0], m * 2.7 * eye[1], 0.05 * eye[2]),
         "chin": (1.25 * eye[0], m * 0.3 * eye[1], mouth_z - 0.85 * eye[2]),
         "head": (0.2 * eye[0], m * 1.9 * eye[1], 2.3 * eye[2]),
         "eyes": (1.75 * eye[0], m * 0.8 * eye[1], eye[2]),
@@ -61,15 +61,51 @@ def body_place(figure: Figure, place: str, hand: int, yaw: Array) -> Array:
 
 
 @dataclass(frozen=True, eq=False)
+class Held:
+    """A thing in a hand: held from time ``since`` (seconds; far below 0: all along), when it was turned by
+    ``rotation`` [3, 3]; ``grip`` [3] in its own coordinates."""
+
+    since: float
+    rotation: Array
+    grip: Array
+
+    @property
+    def handle(self) -> bool:
+        """Whether it is held by a handle beside it, rather than around its middle."""
+        return bool(np.hypot(self.grip[0], self.grip[1]) > 0.02)
+
+    @property
+    def axis_yaw(self) -> float:
+        """Direction from the handle to the middle of the thing, as it was."""
+        d = -(self.rotation @ self.grip)
+        return float(np.arctan2(d[1], d[0]))
+
+    @property
+    def rim(self) -> Array:
+        """From the grip to the rim it is poured from or drunk from, [3] in its own coordinates."""
+        top = float(np.clip(self.grip[2], 0.03, 0.2))
+        return np.array([-self.grip[0], -self.grip[1], top])
+
+    @property
+    def spout(self) -> Array:
+        """Like ``rim``, on the side away from the handle."""
+        top = float(np.clip(self.grip[2], 0.03, 0.2))
+        return np.array([-2.0 * self.grip[0], -2.0 * self.grip[1], 0.8 * top if self.handle else top])
+
+
+@dataclass(frozen=True, eq=False)
 class Layer:
-    """A hand's wish: weight [T]; the place is a point [T, 3] or a body place; angles as in palm_rotation."""
+    """A hand's wish: weight [T]; the place is a point [T, 3] or a body place; angles as in palm_rotation.
+
+    led: the thing of which a part, not the palm, is to be there: its ``rim``, ``spout`` or ``foot``
+    """
 
     hand: int
     weight: Array
     place: Array | str
     offset: Array
     angles: tuple[float, float, float]
-    rim: float = 0.0
+    led: tuple[Held, str] | None = None
 
 
 class HandTracks:
@@ -80,10 +116,16 @@ class HandTracks:
     """
 
     def __init__(
-        self, yaw: Array, carry: Array, tilt: Array, layers: list[Layer], skeleton: Skeleton
+        self,
+        t: Array,
+        yaw: Array,
+        carry: Array,
+        tilt: tuple[Array, Array],
+        layers: list[Layer],
+        skeleton: Skeleton,
     ) -> None:
         shape = carry.shape
-        self.yaw, self.carry, self.layers, self.skeleton = yaw, carry, layers, skeleton
+        self.t, self.yaw, self.carry, self.layers, self.skeleton = t, yaw, carry, layers, skeleton
         self.weight = np.zeros(shape)
         self.turning = carry.copy()
         self.inward = np.full(shape, 0.55)
@@ -98,12 +140,16 @@ class HandTracks:
             for track, angle in zip((self.inward, self.pitch, roll), layer.angles, strict=True):
                 track[k] += share * (angle - track[k])
             self.turning[k] = total
-        free = np.zeros(shape)  # places where a held thing goes along with the hand, whichever way up
+        along, loose = np.zeros(shape), np.zeros(shape)
         for layer in layers:
-            if isinstance(layer.place, str) and layer.place == "ear":
-                free[layer.hand] = np.maximum(free[layer.hand], layer.weight)
-        self.pitch *= 1 - carry * (1 - free)
-        self.tilt = roll * (1 - carry) + tilt
+            if isinstance(layer.place, str) and layer.place in ("ear", "mouth"):
+                track = along if layer.place == "ear" else loose
+                track[layer.hand] = np.maximum(track[layer.hand], layer.weight)
+        lifted = self.pitch * carry * along  # a telephone goes with the hand, a cup stays upright in it
+        self.pitch *= 1 - carry * (1 - np.maximum(along, loose))
+        self.tilt = roll * (1 - carry) + tilt[0]
+        self.lifted = lifted - tilt[1]  # how far what is held points up
+        self.pitch = self.pitch - tilt[1]
         self.reaching = any(not isinstance(x.place, str) for x in layers)
 
     def position(self, figure: Figure) -> Array:
@@ -119,10 +165,8 @@ class HandTracks:
             at = at + np.stack(
                 [ahead * cos - left * sin, ahead * sin + left * cos, np.full_like(cos, up)], axis=1
             )
-            if layer.rim:
-                at = at - self._up(k)[..., 2] * layer.rim
-                if not isinstance(layer.place, str):  # upright it comes in above what it will be tipped over
-                    at[:, 2] += 1.25 * layer.rim * np.maximum(np.cos(self.tilt[k]), 0.0)
+            if layer.led is not None:
+                at = at - self._to_part(k, *layer.led)
             over = w + total[k] * (1 - w)
             share = w / np.maximum(over, 1e-6)
             out[k] += share[:, None] * (at - out[k])
@@ -135,12 +179,28 @@ class HandTracks:
 
     def _up(self, k: int) -> Array:
         """[T, 3, 3]: how a held thing stands."""
-        lifted = self.pitch[k] * self.carry[k]
-        return rot_z(self.hand_yaw(k)) @ rot_y(-lifted) @ rot_x((1.0 - 2.0 * k) * self.tilt[k])
+        m = 1.0 - 2.0 * k
+        return rot_z(self.hand_yaw(k)) @ rot_y(-self.lifted[k]) @ rot_x(m * self.tilt[k])
 
-    def held_rotation(self, k: int, since: int, rotation: Array) -> Array:
-        """[T, 3, 3]: a thing's rotation if the hand obeys; it was ``rotation`` at frame ``since``."""
-        return self._up(k) @ rot_z(-self.hand_yaw(k)[since]) @ rotation
+    def _to_part(self, k: int, held: Held, part: str) -> Array:
+        """[T, 3]: from the palm to a part of what is held; upright a spout comes in above its place."""
+        turned = self.held_rotation(k, held)
+        if part == "foot":
+            return np.asarray(turned @ -held.grip)
+        if part == "rim":
+            return np.asarray(turned @ held.rim)
+        to = turned @ held.spout
+        to[:, 2] -= (held.spout[2] + held.grip[2]) * np.maximum(turned[:, 2, 2], 0.0)
+        return np.asarray(to)
+
+    def held_rotation(self, k: int, held: Held) -> Array:
+        """[T, 3, 3]: a thing's rotation if the hand obeys. What has a handle turns in the hand until it
+        stands before the fingers."""
+        since = int(np.clip(np.searchsorted(self.t, held.since), 0, len(self.t) - 1))
+        yaw = float(self.hand_yaw(k)[since])
+        turn = float(wrap(yaw - held.axis_yaw)) if held.handle else 0.0
+        share = ramp(self.t, held.since, held.since + 0.6)
+        return np.asarray(self._up(k) @ rot_z(turn * share - yaw) @ held.rotation)
 
 
 @dataclass(frozen=True, eq=False)
@@ -157,12 +217,14 @@ def reach_layer(
     t: Array,
     place: Array | str,
     start: tuple[Array, float, Skeleton],
-    rim: float,
+    led: tuple[Held, str] | None,
     extra: Array,
+    fingers: float | None = None,
 ) -> Layer:
     """A reach as a layer.
 
     window: start and duration in seconds; start: (root xy, heading, skeleton) on arrival
+    fingers: heading of the fingers that suits a handle, taken where a hand can do it
     """
     begin, duration = window
     times = [begin + x * duration for x in (reach.start, reach.arrive, reach.leave, reach.end)]
@@ -179,9 +241,11 @@ def reach_layer(
         at = place[len(place) // 2]
         side = xy + m * shoulder[1] * np.array([-np.sin(heading), np.cos(heading)])
         bearing = float(wrap(np.arctan2(at[1] - side[1], at[0] - side[0]) - heading))
+        if fingers is not None and -0.7 < -m * wrap(fingers - heading) < 1.3:
+            bearing = float(wrap(fingers - heading))
         low = np.clip((0.62 * shoulder[2] - at[2]) / 0.6, 0.0, 1.0)
-        angles = (float(np.clip(-m * bearing, -0.5, 1.1)), -0.9 * float(low), tilt)
-    return Layer(hand, weight, place, np.array(reach.offset) + extra, angles, rim)
+        angles = (float(np.clip(-m * bearing, -0.7, 1.3)), -0.9 * float(low), tilt)
+    return Layer(hand, weight, place, np.array(reach.offset) + extra, angles, led)
 
 
 def holding_weight(t: Array, spans: list[tuple[float, float]]) -> Array:
@@ -190,8 +254,3 @@ def holding_weight(t: Array, spans: list[tuple[float, float]]) -> Array:
     for taken, gone in spans:
         out = np.maximum(out, ramp(t, taken - 0.12, taken + 0.4) * (1.0 - ramp(t, gone - 0.06, gone + 0.4)))
     return out
-
-
-def top_above_grip(prop: PropState) -> float:
-    """About how far a thing reaches above where it is held: as far as below."""
-    return float(np.clip(prop.grip[2], 0.03, 0.2))

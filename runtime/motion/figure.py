@@ -207,7 +207,7 @@ class Figure:
         heading = rot_z(yaw)
         high = np.clip((goals.position[..., 2] - root[..., 2] + 0.09 * self.skeleton.height) / 0.25, 0.0, 1.0)
         natural = np.stack(
-            [-0.12 - 0.18 * high, MIRROR * (0.42 + 0.4 * high), np.full_like(high, -1.0)], axis=-1
+            [-0.12 - 0.18 * high, MIRROR * (0.42 + 0.15 * high), np.full_like(high, -1.0)], axis=-1
         )
         natural = turned(heading[None], natural)
         w = goals.weight[..., None]

@@ -12,12 +12,23 @@ from numpy.typing import NDArray
 from runtime.body.skeleton import JOINT
 
 from .acting import Performer, fade, relative_gaze
-from .contacts import SIDE, Contacts, HandTracks, Layer, holding_weight, reach_layer, top_above_grip
+from .contacts import SIDE, Contacts, HandTracks, Held, Layer, holding_weight, reach_layer
 from .curves import plateau, wander
 from .face import GazePull
 from .plan import Event, Plan, Window, add_partner, begin, plan_task
 from .props import Hold, track_prop
-from .types import Actor, ActorState, Gaze, Point, PropState, Reach, SceneMotion, TargetPoint, Task
+from .types import (
+    BODY_PLACES,
+    Actor,
+    ActorState,
+    Gaze,
+    Point,
+    PropState,
+    Reach,
+    SceneMotion,
+    TargetPoint,
+    Task,
+)
 
 Array = NDArray[np.float64]
 IDLE_TIME = 3.0
@@ -176,7 +187,7 @@ class _Scene:
         for k, side in enumerate("lr"):
             spans = [s for holds in self.holds.values() for s in _spans(holds, name, side)]
             carry[k] = holding_weight(t, spans)
-        tilt = np.zeros((2, len(t)))
+        tilt, dip = np.zeros((2, len(t))), np.zeros((2, len(t)))
         weight = performer.channels.pair("arm", "weight")
         lap = performer.sitting * (1 - weight) * (1 - carry)
         layers = []
@@ -185,42 +196,56 @@ class _Scene:
         for window in plan.windows:
             for tip in window.timeline.tilts:
                 times = [window.at(x) for x in (tip.start, tip.arrive, tip.leave, tip.end)]
-                tilt[SIDE[window.hands[tip.hand]]] += tip.angle * plateau(t, *times)
+                side = window.hands[tip.hand]
+                held = self._held(name, side, times[1])
+                if held is not None and held.handle and not _to_body(window, side):
+                    dip[SIDE[side]] += 0.55 * tip.angle * plateau(t, *times)  # a pot is tipped forward
+                else:
+                    tilt[SIDE[side]] += tip.angle * plateau(t, *times)
             for reach in window.timeline.reaches:
                 layer = self._reach(performer, window, reach)
                 if layer is not None:
                     layers.append(layer)
-        return HandTracks(performer.yaw, carry, tilt, layers, performer.skeleton)
+        return HandTracks(t, performer.yaw, carry, (tilt, dip), layers, performer.skeleton)
 
     def _reach(self, performer: Performer, window: Window, reach: Reach) -> Layer | None:
         side = window.hands[reach.hand]
         k = SIDE[side]
         arrive = window.at(reach.arrive)
+        held_id = self._held_id(performer.plan.name, side, arrive + 1e-3)
         held = self._held(performer.plan.name, side, arrive + 1e-3)
-        rim, extra = 0.0, np.zeros(3)
+        extra = np.zeros(3)
+        fingers = None
+        led: tuple[Held, str] | None = None
         tipped = held is not None and any(
             window.hands[x.hand] == side and x.start < reach.end and x.end > reach.start
             for x in window.timeline.tilts
         )
-        if held is not None and tipped:
-            rim = top_above_grip(self.rest[held])
         place: Array | str | None
         if reach.to in ("target", "second"):
             point = window.second if reach.to == "second" else window.target
-            place = self._point(point, held, arrive)
-            if place is not None and held is not None and not tipped and self._put_here(window, side):
-                extra[2] = self.rest[held].grip[2] + 0.004
+            place = self._point(point, held_id, arrive)
+            if held is not None:
+                puts = self._put_here(window, side)
+                led = (held, "spout") if tipped else (held, "foot") if puts else None
+                extra[2] = 0.003 if puts else 0.0
+            if held is None and point is not None and point.object in self.rest:
+                there = self.rest[point.object]
+                thing = Held(arrive, there.world_from_object[:3, :3], np.asarray(there.grip))
+                fingers = thing.axis_yaw if thing.handle else None
         elif reach.to == "meet":
             place = self._meet(performer, window, arrive)
         else:
             place = reach.to
-            if held is not None and reach.to == "mouth":
-                extra = np.array([0.012, 0.0, 0.0])
+            if held is not None and tipped:
+                led = (held, "rim")
+                extra[0] = 0.03
         if place is None:
             return None
         xy, heading = performer.plan.route.root(np.array([arrive]))
         return reach_layer(reach, k, (window.start, window.duration), self.t, place,
-                           (xy[0], float(heading[0]), performer.skeleton), rim, extra)  # fmt: skip
+                           (xy[0], float(heading[0]), performer.skeleton), led,
+                           extra, fingers)  # fmt: skip
 
     def _put_here(self, window: Window, side: str) -> bool:
         return any(g.kind == "put" and window.hands[g.hand] == side for g in window.timeline.grasps)
@@ -262,7 +287,16 @@ class _Scene:
         low = [p.eye_point()[i, 2] - 0.30 * p.height for p in (performer, other)]
         return np.broadcast_to(np.array([*middle, 0.5 * sum(low)]), (len(self.t), 3))
 
-    def _held(self, name: str, side: str, time: float) -> int | None:
+    def _held(self, name: str, side: str, time: float) -> Held | None:
+        """The thing in a hand just before ``time``, as it was when that hand took it."""
+        thing = self._held_id(name, side, time)
+        if thing is None:
+            return None
+        prop = self.rest[thing]
+        hold = next(h for h in reversed(self.holds[thing]) if h.person == name and h.hand == side)
+        return Held(hold.start, prop.world_from_object[:3, :3], np.asarray(prop.grip))
+
+    def _held_id(self, name: str, side: str, time: float) -> int | None:
         for thing, holds in self.holds.items():
             for hold in holds:
                 if hold.person == name and hold.hand == side and hold.start < time <= hold.end + 1e-3:
@@ -313,6 +347,11 @@ def _receiving(plan: Plan, event: Event) -> str:
         return "r"
     reach = next((r for r in window.timeline.reaches if r.to == "meet"), None)
     return window.hands[reach.hand if reach is not None else "free"]
+
+
+def _to_body(window: Window, side: str) -> bool:
+    """Whether that hand goes to the person's own body in this window, as for drinking."""
+    return any(r.to in BODY_PLACES and window.hands[r.hand] == side for r in window.timeline.reaches)
 
 
 def _spans(holds: list[Hold], person: str, hand: str) -> list[tuple[float, float]]:

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from runtime.body.skeleton import JOINT
 
-from .contacts import SIDE, HandTracks
+from .contacts import SIDE, HandTracks, Held
 from .curves import ramp
 from .figure import Figure
 from .rotations import blend
@@ -52,7 +52,8 @@ def track_prop(
             continue
         k = SIDE[hold.hand]
         start = int(np.clip(np.searchsorted(t, hold.start), 0, frames - 1))
-        wished = tracks[hold.person].held_rotation(k, start, rotation[start])
+        held = Held(hold.start, rotation[start], grip)
+        wished = tracks[hold.person].held_rotation(k, held)
         hand = figures[hold.person].rotation[:, JOINT[f"hand_{hold.hand}"]]
         turned = hand @ np.swapaxes(goals[hold.person][k], -1, -2) @ wished
         at = palms[hold.person][k] - turned @ grip

@@ -98,11 +98,11 @@ def _finish(
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.int64], NDArray[np.float64]]:
     """Vertices, normals, faces and dense weights of a piece, both sides where it has two."""
     vertices, normals, faces = piece.patch.vertices, _normals(figure, piece), piece.patch.faces
-    weights = _weights(figure, piece)
+    weights = _weights(figure, piece, normals)
     if piece.symmetry == "whole":
         return vertices, normals, faces, weights
     twin = other_side(piece)
-    other_weights = _weights(figure, twin)
+    other_weights = _weights(figure, twin, normals * np.array([1.0, -1.0, 1.0]))
     n = len(vertices)
     index = np.arange(n) + n
     if piece.symmetry == "half":
@@ -164,14 +164,14 @@ def vertex_normals(patch: Patch) -> NDArray[np.float64]:
     return out
 
 
-def _weights(figure: Figure, piece: Piece) -> NDArray[np.float64]:
+def _weights(figure: Figure, piece: Piece, normals: NDArray[np.float64]) -> NDArray[np.float64]:
     points = piece.patch.vertices
     if piece.rule == "body":
-        return body_weights(figure, points)
+        return body_weights(figure, points, normals=normals)
     if piece.rule == "legs":
         return body_weights(figure, points, arms=False)
     if piece.rule == "skirt":
-        return body_weights(figure, points, side_blend=0.09)
+        return body_weights(figure, points, side_blend=0.09, normals=normals)
     if piece.rule == "face":
         return face_weights(figure, points)
     return rigid(piece.rule, len(points))

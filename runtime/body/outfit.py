@@ -37,7 +37,7 @@ def along_arm(f: Figure, end: float) -> Field:
     def field(p: Points) -> Values:
         d = p - origin
         local = d @ ARM_FRAME.T
-        on_arm = np.hypot(local[:, 1], local[:, 2]) < (0.040 * limb(f) + 0.014) * f.p.height
+        on_arm = np.hypot(local[:, 1], local[:, 2]) < (0.046 * limb(f) + 0.016) * f.p.height
         return np.where(on_arm, local[:, 0] - end, -0.1)
 
     return field

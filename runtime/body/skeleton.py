@@ -74,6 +74,8 @@ HELPERS: tuple[tuple[str, str], ...] = tuple(
         ("half-knee", "shin"),
     )
 )
+#: How far kneecap and elbow come forward (back, where negative) when bent, as shares of the height.
+_PUSH = {"half-knee": 0.020, "half-elbow": -0.010}
 #: Everything a vertex of a body may hang on: the joints, then the helpers.
 PALETTE: tuple[str, ...] = JOINTS + tuple(name for name, _ in HELPERS)
 
@@ -144,9 +146,12 @@ def skinning_matrices(skeleton: Skeleton, world_from_joint: NDArray[np.floating]
             axis = skeleton.bind[j] - skeleton.bind[parent]
             axis = axis / np.linalg.norm(axis)
             turn = np.concatenate([turn[:, :1], (turn[:, 1:] @ axis)[:, None] * axis], axis=1)
+        bend = 1.0 - turn[:, 0] ** 2  # sin² of half the angle
         turn[:, 0] += np.linalg.norm(turn, axis=1) + 1e-9  # halfway to no turn
-        world[:, k, :, :3] = base @ _matrix(turn)
-        world[:, k, :, 3] = world_from_joint[:, j, :3, 3]
+        half = base @ _matrix(turn)
+        push = np.array([_PUSH.get(name[:-2], 0.0) * skeleton.height, 0.0, 0.0])
+        world[:, k, :, :3] = half
+        world[:, k, :, 3] = world_from_joint[:, j, :3, 3] + bend[:, None] * (half @ push)
         bind[k] = skeleton.bind[j]
     world[..., 3] -= np.einsum("tjab,jb->tja", world[..., :3], bind)
     return world.astype(np.float32)

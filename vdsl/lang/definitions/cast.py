@@ -129,9 +129,7 @@ def _features(
     return found
 
 
-def _entry_value(
-    name: str, entry: ast.Entry, env: Mapping[str, Bound], report: Report
-) -> float | str | None:
+def _entry_value(name: str, entry: ast.Entry, env: Mapping[str, Bound], report: Report) -> float | str | None:
     reader = Reader(entry, env, report)
     value = reader.value(0)
     reader.done()

@@ -78,7 +78,7 @@ class Performer:
         calm = self.still
         breath = np.sin(2 * np.pi * t / rng.uniform(3.2, 4.4) + rng.uniform(0, 6.3))
         self.breath = breath
-        self.sway = 0.017 * wander(t, rng, 6.5) * calm * (1 - 0.8 * self.sitting)
+        self.sway = 0.026 * wander(t, rng, 6.5) * calm * (1 - 0.8 * self.sitting)
         self.twirl = 0.035 * wander(t, rng, 7.5) * calm
         self.nodding = 0.02 * wander(t, rng, 4.0)
         self.turning = 0.045 * wander(t, rng, 5.0) * calm

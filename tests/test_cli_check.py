@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import subprocess
 import sys
 from pathlib import Path
@@ -120,6 +121,27 @@ def test_a_megabyte_in_one_line(script: Path) -> None:
     assert result.exit_code == 1
     assert "error[VDS005]" in result.stderr
     assert len(result.stderr) < 2_000
+
+
+def test_ten_thousand_lines(script: Path) -> None:
+    script.write_text(GOOD + "(anna walk window)\n" * 10_000)
+    result = vdsc("check", script)
+    assert (result.exit_code, result.stderr) == (0, "")
+    assert "10001 lines" in result.stdout
+
+
+def test_any_terminal_will_do(script: Path) -> None:
+    strange = script.with_name(os.fsdecode("é\udcff.vds".encode("utf-8", "surrogateescape")))
+    strange.write_text('(anna wave) say "猫\n', encoding="utf-8")
+    for extra in ([], ["--format", "json"]):
+        run = subprocess.run(
+            [sys.executable, "-c", "from vdsl.cli import main; main()", "check", str(strange), *extra],
+            capture_output=True,
+            env={**os.environ, "PYTHONIOENCODING": "ascii"},
+        )
+        assert run.returncode == 1
+        assert b"Traceback" not in run.stderr
+    assert json.loads(run.stdout)["errors"] == 2
 
 
 def test_a_missing_file_is_usage(script: Path) -> None:

@@ -23,12 +23,39 @@ class Set(DefinitionBase):
 
 
 @dataclass(frozen=True)
+class Move:
+    kind: str
+
+
+@dataclass(frozen=True)
+class Part:
+    moves: tuple[Move, ...]
+
+
+@dataclass(frozen=True)
+class Variant:
+    part: Part
+
+
+#: What has to be in a hand, and what the action does about it.
+HANDS = {
+    "pick-up": ("none", "take"),
+    "put-down": ("any", "put"),
+    "give": ("target", "pass"),
+    "pour": ("second", "tip"),
+    "drink": ("target", "tip"),
+}
+
+
+@dataclass(frozen=True)
 class Action(DefinitionBase):
     target: str = "none"
     target_kinds: tuple[str, ...] = ()
     second: str = "none"
     second_kinds: tuple[str, ...] = ()
     travels: bool = False
+    needs: str = "none"
+    variants: tuple[Variant, ...] = ()
 
 
 def node(
@@ -90,11 +117,12 @@ ACTIONS = {
     "stand-up": ("none", (), "none"),
     "pick-up": ("required", ("object",), "none"),
     "put-down": ("required", ("object",), "optional"),
-    "pour": ("required", ("object",), "none"),
+    "pour": ("required", ("object",), "optional"),
     "greet": ("required", ("character",), "none"),
     "give": ("required", ("object",), "required"),
     "look": ("required", PLACE, "none"),
     "wait": ("none", (), "none"),
+    "drink": ("optional", ("object",), "none"),
 }
 
 PERSON = (
@@ -115,8 +143,11 @@ class SmallCatalog:
         for root in (APARTMENT, STREET):
             self._all["set", root.name] = Set(root.name, (), NOWHERE, root)
         for name, (target, kinds, second) in ACTIONS.items():
+            needs, move = HANDS.get(name, ("none", ""))
+            variants = (Variant(Part((Move(move),))),) if move else ()
+            also = ("character",) if name == "give" else ()
             self._all["action", name] = Action(
-                name, (), NOWHERE, target, kinds, second, ("character",) if name == "give" else ()
+                name, (), NOWHERE, target, kinds, second, also, False, needs, variants
             )
         for name in ("woman", "man"):
             self._all["cast", name] = DefinitionBase(name, PERSON, NOWHERE)

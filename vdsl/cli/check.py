@@ -22,7 +22,7 @@ from ..lang.ir import Storyboard
 from ..lang.parse import parse
 from ..lang.settings import Settings
 from ..library.loader import Catalog
-from .show import print_report, printable
+from .show import print_report, printable, write_line
 
 FINE, WRONG, USAGE, MACHINE = 0, 1, 2, 3
 
@@ -84,7 +84,7 @@ def check_or_exit(
 
 def stop(message: str, code: int) -> NoReturn:
     """Print one line of why, and leave."""
-    print(f"vdsc: {printable(message)}", file=sys.stderr)
+    write_line(f"vdsc: {printable(message)}", sys.stderr)
     raise typer.Exit(code)
 
 
@@ -98,7 +98,7 @@ def check(
     """
     checked = check_or_exit(file, format.value)
     if checked.storyboard is not None and format is Format.text:
-        print(f"{file}: {summary(checked.storyboard)}")
+        write_line(f"{printable(str(file))}: {summary(checked.storyboard)}", sys.stdout)
 
 
 def summary(storyboard: Storyboard) -> str:

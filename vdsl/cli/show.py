@@ -31,12 +31,12 @@ _RESET = "\x1b[0m"
 def print_report(report: Report, format: str = "text", file: str = "", stream: TextIO | None = None) -> None:
     """Print all findings: ``text`` to the error stream, ``json`` to the output stream, unless told where."""
     if format == "json":
-        print(as_json(report, file), file=stream or sys.stdout)
+        write_line(as_json(report, file), stream or sys.stdout)
         return
     stream = stream or sys.stderr
     text = as_text(report.diagnostics, colour=wants_colour(stream))
     if text:
-        _write(text, stream)
+        write_line(text, stream)
 
 
 def as_json(report: Report, file: str) -> str:
@@ -49,7 +49,18 @@ def as_json(report: Report, file: str) -> str:
         "warnings": sum(d.severity == "warning" for d in found),
         "diagnostics": [_entry(d) for d in found],
     }
-    return json.dumps(document, ensure_ascii=False, indent=2)
+    text = json.dumps(document, ensure_ascii=False, indent=2)
+    # A file's name may hold bytes that are no text; escaped they are still JSON.
+    return text if _encodes(text) else json.dumps(document, indent=2)
+
+
+def _encodes(text: str) -> bool:
+    encoding = getattr(sys.stdout, "encoding", None) or "utf-8"
+    try:
+        text.encode(encoding)
+    except UnicodeEncodeError:
+        return False
+    return True
 
 
 def _entry(d: Diagnostic) -> dict[str, object]:
@@ -173,7 +184,7 @@ def wants_colour(stream: TextIO) -> bool:
     return stream.isatty()
 
 
-def _write(text: str, stream: TextIO) -> None:
-    """Print, also where the stream's encoding knows fewer characters than the script."""
+def write_line(text: str, stream: TextIO) -> None:
+    """Print, also where the stream's encoding knows fewer characters than the text."""
     encoding = getattr(stream, "encoding", None) or "utf-8"
     print(text.encode(encoding, "replace").decode(encoding), file=stream)

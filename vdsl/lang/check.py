@@ -15,6 +15,7 @@ from .beats import BeatReader, resolve, unknown_character
 from .catalog import CatalogLike
 from .diagnostics import Report, listing
 from .files import used_scripts
+from .hands import Hands
 from .ids import Ids
 from .ir import Beat, Character, Placement, Scene, Storyboard, StoryLine, Target
 from .lookup import Lookup, Setting
@@ -45,6 +46,7 @@ class _Stage:
     time: str
     scope: Scope | None
     members: tuple[str, ...]
+    hands: Hands
     span: Span
     reader: BeatReader | None = None
     placements: dict[str, Placement] = field(default_factory=dict)
@@ -103,8 +105,8 @@ class _Checker:
     def _broken_scene(self, index: int, line: ast.Broken) -> None:
         """A scene whose line does not read: what happens in it is checked as far as it can be."""
         self._finish_scene()
-        members = self._members(index)
-        self.stage = _Stage(len(self.scenes), line.name or "", "", (), "day", None, members, line.span)
+        members, hands = self._members(index), Hands(self.catalog, self.report)
+        self.stage = _Stage(len(self.scenes), line.name or "", "", (), "day", None, members, hands, line.span)
 
     def _storyboard(self) -> Storyboard:
         said, over = self.settings, self.overrides
@@ -233,6 +235,7 @@ class _Checker:
             time=time or found.time,
             scope=scope,
             members=self._members(index),
+            hands=Hands(self.catalog, self.report),
             span=line.span,
         )
 
@@ -358,6 +361,8 @@ class _Checker:
         beats = [self._beat(stage.reader, each, stage) for each in node.beats]
         done = tuple(beat for beat in beats if beat is not None)
         self._together(done)
+        for beat in done:
+            stage.hands.act(beat)
         context = LineContext(
             stage.name,
             done,

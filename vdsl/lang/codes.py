@@ -465,6 +465,13 @@ CODES: dict[str, Code] = {
         "(anna wave)\ndissolve 12f\nwipe\n(anna walk)",
         "(anna wave)\ndissolve 12f\n(anna walk)",
     ),
+    "VDS080": Code(
+        "empty hands",
+        "The action is done with something that should be in a hand by now, and nobody picked it up. The line is "
+        "played all the same, as well as that can be.",
+        "(ben drink)",
+        "(ben pick up cup)\n(ben drink)",
+    ),
     "VDS079": Code(
         "someone has no place yet",
         "Someone takes part in a scene and has not been placed in it. They are put at the scene's first free spot; "

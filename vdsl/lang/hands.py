@@ -1,0 +1,72 @@
+"""Who holds what, line by line: so that nobody drinks from empty hands unnoticed.
+
+Follows what actions take, put and pass on. Only warns: how a line is acted is the engine's to decide.
+"""
+
+from __future__ import annotations
+
+from .catalog import CatalogLike
+from .definitions.types import DefinitionBase
+from .diagnostics import Report
+from .ir import Beat, Target
+
+Thing = tuple[str, ...]
+
+
+class Hands:
+    """The hands of everyone in one scene; empty when it opens."""
+
+    def __init__(self, catalog: CatalogLike, report: Report) -> None:
+        self._catalog = catalog
+        self._report = report
+        self._held: dict[str, list[Thing]] = {}
+
+    def act(self, beat: Beat) -> None:
+        """Follow one beat, and warn where it needs something that is not in a hand."""
+        definition = self._catalog.get("action", beat.action)
+        if definition is None:
+            return
+        self._need(beat, getattr(definition, "needs", "none"))
+        held = self._held.setdefault(beat.character, [])
+        moves = _moves(definition)
+        if "take" in moves and beat.target is not None and beat.target.kind == "object":
+            for other in self._held.values():
+                _drop(other, beat.target.path)
+            held.append(beat.target.path)
+        if "put" in moves or "pass" in moves:
+            gone = self._meant(beat, held)
+            if gone is not None:
+                held.remove(gone)
+                if "pass" in moves and beat.second is not None and beat.second.kind == "character":
+                    self._held.setdefault(beat.second.path[0], []).append(gone)
+
+    def _meant(self, beat: Beat, held: list[Thing]) -> Thing | None:
+        """What leaves the hand: the target if it is held, else what was taken last."""
+        if beat.target is not None and beat.target.path in held:
+            return beat.target.path
+        return held[-1] if held else None
+
+    def _need(self, beat: Beat, needs: str) -> None:
+        wanted: Target | None = {"target": beat.target, "second": beat.second}.get(needs)
+        held = self._held.get(beat.character, [])
+        if needs == "none" or (wanted.path in held if wanted is not None else held):
+            return
+        what = f"`{wanted.written}`" if wanted is not None else "anything"
+        name = wanted.written if wanted is not None else "NAME"
+        self._report.warn(
+            "VDS080",
+            beat.span,
+            label=f"{beat.character} does not hold {what} here",
+            help=f"a line like `({beat.character} pick up {name})` before this puts it in a hand",
+        )
+
+
+def _moves(definition: DefinitionBase) -> set[str]:
+    """Kinds of moves of an action's plain variant."""
+    variants = getattr(definition, "variants", ())
+    return {move.kind for move in variants[0].part.moves} if variants else set()
+
+
+def _drop(held: list[Thing], thing: Thing) -> None:
+    if thing in held:
+        held.remove(thing)

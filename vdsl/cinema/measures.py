@@ -32,7 +32,7 @@ MEASURES = (
     "head_visible",  # share of the window in which the eyes are in the frame and not hidden
     "in_frame",  # share of the window in which head and middle of what is framed are in the frame
     "size_error",  # |log| of the framed stretch's height against the asked one, at the key frame
-    "size_drift",  # the greatest |log| of the same over the window
+    "size_drift",  # the greatest |log| of the visible height at the subject against the key frame's
     "headroom",  # height of the frame above the crown, share of the frame, mean over the window
     "headroom_error",  # the same, off the size's own headroom
     "lead_room",  # more room ahead of the face than behind: −1..1, 0 where it looks at the camera
@@ -160,18 +160,21 @@ def _framing(
     heads = inside[:, :, picture.names.index("eyes")]
     both = heads & inside[rows, :, core]
     stretch = np.maximum(xy[rows, :, lower, 1] - xy[rows, :, upper, 1], 1e-4)
+    key = _key_sample(takes, at)
+    depth = np.maximum(picture.depth[:, :, picture.names.index("pocket")], 0.01)
+    view = depth * takes.track.sensor[1] / takes.track.focal[:, at]
+    drift = np.abs(np.log(view / view[rows, key][:, None]))
     if takes.paper:
-        asked = np.array([PAPER_RADIUS[s.name] for s in takes.sizes])
-        depth = picture.depth[:, :, picture.names.index("pocket")]
-        view = np.maximum(depth, 0.01) * takes.track.sensor[1] / takes.track.focal[:, at] / subject.height
-        error = np.abs(np.log(view / asked[:, None]))
+        asked = np.array([PAPER_RADIUS[s.name] for s in takes.sizes]) * subject.height
+        error = np.abs(np.log(view[rows, key] / asked))
     else:
-        error = np.abs(np.log(stretch / np.array([s.share for s in takes.sizes])[:, None]))
+        share = np.array([s.share for s in takes.sizes])
+        error = np.abs(np.log(stretch[rows, key] / share))
     crown = xy[rows, :, upper, 1]
     return {
         "in_frame": _mean(both, window),
-        "size_error": error[rows, _key_sample(takes, at)],
-        "size_drift": np.where(window, error, 0.0).max(axis=1),
+        "size_error": error,
+        "size_drift": np.where(window, drift, 0.0).max(axis=1),
         "headroom": np.clip(_mean(crown, window), -1.0, 2.0),
         "headroom_error": np.minimum(_mean(np.abs(crown - top[:, None]), window), 2.0),
         "thirds_error": np.minimum(_mean(np.abs(eyes[..., 1] - 1 / 3), window), 2.0),

@@ -32,7 +32,7 @@ from .types import STILL, Performance, ProposalGrid, StoryProposal
 
 __all__ = ["SceneState", "Told", "advance", "opening_state", "propose", "propose_story", "tell"]
 
-MOST = 6  # story proposals a line: more are ways nobody would tell apart
+MOST = 4  # story proposals a line: more are ways nobody would tell apart
 _STILL = 4.0  # seconds of a shot in which nobody does anything, where the script does not say
 
 

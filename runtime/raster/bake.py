@@ -58,18 +58,29 @@ def key_casters(mesh: Mesh, wall: NDArray[np.int32], object_ids: NDArray[np.int3
     return np.flatnonzero(keep).astype(np.int32)
 
 
-def occlusion_volume(mesh: Mesh) -> Volume:
+def stage_bounds(mesh: Mesh, casters: NDArray[np.int32]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Low and high corner of what stands in a set, without the plain around it."""
+    chosen = mesh.faces[casters] if len(casters) else mesh.faces
+    points = mesh.vertices[chosen.reshape(-1)].astype(np.float64)
+    if not len(points):
+        return np.zeros(3), np.zeros(3)
+    return points.min(axis=0), points.max(axis=0)
+
+
+def occlusion_volume(mesh: Mesh, casters: NDArray[np.int32]) -> Volume:
     """The occlusion volume of a static mesh."""
     if not len(mesh.faces):
         return Volume(np.zeros((2, 2, 2), np.float32), np.zeros(3), 1.0)
     solid = ~np.isin(mesh.materials, [MATERIALS.index("glass"), MATERIALS.index("glow")])
     corners = mesh.vertices[mesh.faces[solid]].astype(np.float64)
     margin = 2.5 * REACH
-    used = mesh.vertices[mesh.faces.reshape(-1)].astype(np.float64)
-    low, high = used.min(axis=0) - margin, used.max(axis=0) + margin
+    low, high = stage_bounds(mesh, casters)
+    low, high = low - margin, high + margin
     cell = max(CELL, float((np.prod(high - low) / CELLS) ** (1 / 3)))
     shape = np.ceil((high - low) / cell).astype(int) + 2
     points, areas = _surface_points(corners, cell * 0.7)
+    within = ((points > low) & (points < high)).all(axis=1)
+    points, areas = points[within], areas[within]
     where = (points - low) / cell
     base = np.floor(where).astype(np.int64)
     part = where - base
@@ -86,7 +97,7 @@ def occlusion_volume(mesh: Mesh) -> Volume:
 def _surface_points(
     corners: NDArray[np.float64], spacing: float
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Points spread evenly over triangles [F, 3, 3], about ``spacing`` apart, and the area each stands for."""
+    """Points spread evenly over triangles [F, 3, 3], about ``spacing`` apart, and the area of each."""
     a, u, v = corners[:, 0], corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
     area = np.linalg.norm(np.cross(u, v), axis=1) / 2
     longest = np.linalg.norm(np.stack([u, v, u - v]), axis=2).max(axis=0)

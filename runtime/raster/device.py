@@ -65,7 +65,9 @@ def start(device: str = "auto") -> Backend:
     if _started:
         backend = _started[0]
         if device not in ("auto", backend.name):
-            raise DeviceError(f"this process already renders on {backend.name}; start another one for {device}")
+            raise DeviceError(
+                f"this process already renders on {backend.name}; start another one for {device}"
+            )
         return backend
     os.environ.setdefault("ENABLE_TAICHI_HEADER_PRINT", "0")
     import taichi as ti

@@ -7,6 +7,7 @@ both parts are cut into clusters of neighbouring triangles that share wall, cull
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,7 +15,7 @@ from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 
 from ..mesh import MATERIALS, Mesh
-from .bake import Volume, key_casters, occlusion_volume
+from .bake import Volume, key_casters, occlusion_volume, stage_bounds
 from .film import to_linear
 from .types import RenderScene, Style
 
@@ -38,7 +39,8 @@ class Prepared:
     surface_object: int32 [S]: object id of each surface, a surface being one part of one object
     moving_surface: index of the first skinned surface; static_faces: number of static triangles
     set_casters, casters: int32, triangles that throw shadows, static and skinned; area: float32 [K], square
-    metres a skinned vertex stands for; volume: occlusion of the set
+    metres a skinned vertex stands for; volume: occlusion of the set; stage: corners of
+    what stands in it
     """
 
     vertices: NDArray[np.float32]
@@ -58,6 +60,7 @@ class Prepared:
     casters: NDArray[np.int32]
     area: NDArray[np.float32]
     volume: Volume
+    stage: tuple[NDArray[np.float64], NDArray[np.float64]]
 
 
 def check(scene: RenderScene) -> None:
@@ -69,8 +72,8 @@ def check(scene: RenderScene) -> None:
         if not np.isfinite(mesh.normals).all() or not np.isfinite(mesh.colors).all():
             raise ValueError(f"RenderScene.{name}: normals and colours must be finite")
         if len(ids) != len(mesh.faces):
-            raise ValueError(f"RenderScene.{name}_object: expected one id for each of {len(mesh.faces)} faces")
-        if len(mesh.materials) and not (0 <= mesh.materials.min() and mesh.materials.max() < len(MATERIALS)):
+            raise ValueError(f"RenderScene.{name}_object: {len(ids)} ids for {len(mesh.faces)} faces")
+        if len(mesh.materials) and not (mesh.materials.min() >= 0 and mesh.materials.max() < len(MATERIALS)):
             raise ValueError(f"RenderScene.{name}: a material is not in MATERIALS")
     if len(scene.static_wall) != len(scene.static.faces):
         raise ValueError("RenderScene.static_wall: expected one number for each static face")
@@ -123,7 +126,7 @@ def _clusters(
     begins = np.concatenate([[0], change, [len(order)]])
     rows = [
         (at, min(CLUSTER, stop - at), int(key[at, 2]), int(key[at, 0]))
-        for begin, stop in zip(begins[:-1], begins[1:], strict=True)
+        for begin, stop in pairwise(begins)
         for at in range(begin, stop, CLUSTER)
     ]
     return order, np.array(rows, np.int32)
@@ -186,6 +189,7 @@ def prepare(scene: RenderScene, style: Style) -> Prepared:
     wall = np.concatenate([scene.static_wall[order], none])
     quiet = np.where(clear[:, None], to_linear(static.colors), quieted(to_linear(static.colors), style.quiet))
     color = np.concatenate([quiet, to_linear(skinned.colors)])
+    set_casters = key_casters(static, scene.static_wall[order], scene.static_object[order])
     return Prepared(
         vertices=static.vertices,
         normals=static.normals,
@@ -200,10 +204,11 @@ def prepare(scene: RenderScene, style: Style) -> Prepared:
         surface_object=surfaces[:, 1].astype(np.int32),
         moving_surface=int((surfaces[:, 0] == 0).sum()),
         static_faces=len(order),
-        set_casters=key_casters(static, scene.static_wall[order], scene.static_object[order]),
+        set_casters=set_casters,
         casters=(key_casters(skinned, none, none) + len(order)).astype(np.int32),
         area=_vertex_area(skinned),
-        volume=occlusion_volume(static),
+        volume=occlusion_volume(static, set_casters),
+        stage=stage_bounds(static, set_casters),
     )
 
 

@@ -24,7 +24,7 @@ SET_TEXEL = 0.006  # metres, finest
 SHADOW = 512  # texels along a moment's shadow map, for large pictures; half for small ones
 TEXEL = 0.004  # metres, finest
 FLOOR_CELL = 0.05  # metres
-FLOOR_CELLS = 256  # most cells along the floor
+FLOOR_CELLS = 512  # most cells along the floor
 
 
 class Renderer:
@@ -68,7 +68,6 @@ class Renderer:
                 "clusters",
                 "sphere",
                 "surface_object",
-                "set_casters",
                 "casters",
                 "area",
             )
@@ -87,16 +86,16 @@ class Renderer:
         self._arrays["values"] = up(volume.values.reshape(-1))
         self._arrays["volume_low"] = up(np.array([*volume.low, 1.0 / volume.cell], np.float32))
         self._volume_shape = volume.values.shape
-        self._load_floor(scene)
+        self._load_floor(prepared)
         self._load_shadow(prepared)
         self._walls = scene.wall_count
         self._palette_size = int(scene.joints.max()) + 1 if len(scene.joints) else 0
         self._scene = prepared
 
-    def _load_floor(self, scene: RenderScene) -> None:
+    def _load_floor(self, prepared: Prepared) -> None:
         """The grid of floor cells on which people leave their contact shadow."""
-        points = scene.static.vertices if len(scene.static.vertices) else np.zeros((1, 3), np.float32)
-        low, high = points[:, :2].min(axis=0), points[:, :2].max(axis=0)
+        low, high = (corner[:2] for corner in prepared.stage)
+        low, high = low - 0.5, high + 0.5
         cell = max(FLOOR_CELL, float((high - low).max()) / FLOOR_CELLS)
         self._columns, self._rows = (int(n) for n in np.ceil((high - low) / cell) + 2)
         corner = low - cell
@@ -105,19 +104,21 @@ class Renderer:
     def _load_shadow(self, prepared: Prepared) -> None:
         """The shadow map of the set."""
         a, size, up = self._arrays, SET_SHADOW, self.backend.upload
-        self._set_frame = up(np.zeros((1, 3), np.float32))
+        self._set_frame = up(np.array([[1e6, 1e6, 100.0]], np.float32))  # no map: out of reach
         if len(prepared.set_casters) and self.style.shadows:
-            vertices = up(prepared.vertices[None])
+            # only what casts, so that the map is not spent on the plain around
+            used, corners = np.unique(prepared.faces[prepared.set_casters], return_inverse=True)
+            vertices = up(prepared.vertices[used][None])
+            faces = up(corners.reshape(-1, 3).astype(np.int32))
+            casters = up(np.arange(len(prepared.set_casters), dtype=np.int32))
             self._set_size = size
             self._set_depth = self._buffer("set_depth", (size * size,), np.float32)
             self._set_coarse = self._buffer("set_coarse", ((size // self._light.BLOCK) ** 2,), np.float32)
             spare = self._buffer("set_spare", ((size // self._light.BLOCK) ** 2,), np.float32)
             seen = self.backend.buffer(vertices.shape, np.float32)
-            self._light.fit(
-                vertices, a["basis"], SET_TEXEL, size, len(prepared.vertices), 1, seen, self._set_frame
-            )
+            self._light.fit(vertices, a["basis"], SET_TEXEL, size, len(used), 1, seen, self._set_frame)
             self._light.cast(
-                seen, a["faces"], a["set_casters"], 0, self._set_frame, size, 1, self._set_depth, spare, self._set_coarse
+                seen, faces, casters, 0, self._set_frame, size, 1, self._set_depth, spare, self._set_coarse
             )
         else:
             self._set_size = 1
@@ -160,12 +161,14 @@ class Renderer:
         if width < 1 or height < 1:
             raise ValueError(f"size: {width} x {height} has no pixels")
         if palettes.ndim != 4 or palettes.shape[2:] != (3, 4) or palettes.shape[1] < self._palette_size:
-            raise ValueError(f"palettes: expected [M, {self._palette_size} or more, 3, 4], got {palettes.shape}")
+            raise ValueError(
+                f"palettes: expected [M, {self._palette_size} or more, 3, 4], got {palettes.shape}"
+            )
         if not np.isfinite(palettes).all():
             raise ValueError("palettes: not all numbers are finite")
         moment = np.asarray(views.moment, np.int32)
         count = len(moment)
-        if count and not (0 <= moment.min() and moment.max() < max(len(palettes), 1)):
+        if count and not (moment.min() >= 0 and moment.max() < max(len(palettes), 1)):
             raise ValueError("Views.moment: an index is outside the palettes")
         hidden = np.asarray(views.hidden)
         if hidden.shape != (count, self._walls):
@@ -192,7 +195,7 @@ class Renderer:
         self._normal = self._buffer("normal", (moments, vertices, 3), np.float32)
         clusters = len(scene.clusters) - scene.moving_first
         self._ball = self._buffer("ball", (moments, max(clusters, 1), 4), np.float32)
-        self._size = size if clusters and len(palettes) and self.style.shadows else 1
+        self._size = size if len(scene.casters) and len(palettes) and self.style.shadows else 1
         self._frame = self._buffer("frame", (moments, 3), np.float32)
         self._depth = self._buffer("depth", (moments * self._size**2,), np.float32)
         blocks = max(1, self._size // self._light.BLOCK)
@@ -220,7 +223,7 @@ class Renderer:
                 self._position,
                 self._ball,
             )
-            if self._size > 1 and len(scene.casters):
+            if self._size > 1:
                 seen = self._buffer("seen", (moments, vertices, 3), np.float32)
                 blur = self._buffer("blur", (moments * blocks**2,), np.float32)
                 self._light.fit(
@@ -241,7 +244,14 @@ class Renderer:
             if self.style.occlusion:
                 spare = self._buffer("spare", (moments * cells,), np.float32)
                 self._light.touch(
-                    self._position, a["area"], len(palettes), a["floor"], self._columns, self._rows, spare, self._ground
+                    self._position,
+                    a["area"],
+                    len(palettes),
+                    a["floor"],
+                    self._columns,
+                    self._rows,
+                    spare,
+                    self._ground,
                 )
 
     def _draw(
@@ -317,14 +327,13 @@ class Renderer:
                 height,
             )
             picture = inked
-        self._finish.smooth_rows(
-            picture, self._linear, self._table, color.reshape(-1), views, width, height
-        )
+        self._finish.smooth_rows(picture, self._linear, self._table, color.reshape(-1), views, width, height)
         if objects is not None:
             self._finish.object_ids(edge, a["surface_object"], objects.reshape(-1), pixels)
 
-
-    def _rasterise(self, view: Any, moment: Any, hidden: Any, vis: Any, size: tuple[int, int], views: int) -> None:
+    def _rasterise(
+        self, view: Any, moment: Any, hidden: Any, vis: Any, size: tuple[int, int], views: int
+    ) -> None:
         """Fill the visibility buffers: a view or band a thread on the host, a triangle a thread elsewhere."""
         scene, a = self._scene, self._arrays
         assert scene is not None

@@ -151,9 +151,7 @@ def looking(
         np.full(len(e), focal, np.float32),
         sensor,
     )
-    return Views(
-        camera, np.array(moments or [0] * len(e), np.int32), np.zeros((len(e), walls), np.bool_)
-    )
+    return Views(camera, np.array(moments or [0] * len(e), np.int32), np.zeros((len(e), walls), np.bool_))
 
 
 def room() -> RenderScene:
@@ -170,7 +168,7 @@ def room() -> RenderScene:
     static.append(box((0.0, 2.98, 0.9), (2.42, 3.6, 0.94), (0.4, 0.38, 0.36), "concrete", 10))
     static.append(box((2.9, 3.3, 0), (3.8, 3.6, 1.9), (0.7, 0.55, 0.4), "wood", 11))
     people = []
-    for k, (x, y, top) in enumerate(((1.0, 1.2, (0.76, 0.18, 0.2)), (3.2, 2.0, (0.16, 0.24, 0.45)))):
+    for x, y, top in ((1.0, 1.2, (0.76, 0.18, 0.2)), (3.2, 2.0, (0.16, 0.24, 0.45))):
         people.append(
             join(
                 [

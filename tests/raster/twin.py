@@ -36,7 +36,9 @@ def trace(scene: RenderScene, views: Views, n: int, size: tuple[int, int], quiet
     fx = float(cam.focal[n]) / cam.sensor[0] * width
     fy = float(cam.focal[n]) / cam.sensor[1] * height
     xs, ys = np.meshgrid(np.arange(width) + 0.5, np.arange(height) + 0.5)
-    rays = axes[2] + ((xs - width / 2) / fx)[..., None] * axes[0] - ((ys - height / 2) / fy)[..., None] * axes[1]
+    rays = (
+        axes[2] + ((xs - width / 2) / fx)[..., None] * axes[0] - ((ys - height / 2) / fy)[..., None] * axes[1]
+    )
     depth = np.full((height, width), np.inf)
     ids = np.full((height, width), -1, np.int32)
     color = np.zeros((height, width, 3))

@@ -3,6 +3,9 @@
 Pictures in between are packed sRGB with the luma in the fourth byte.
 """
 
+# mypy: ignore-errors
+# Taichi reads annotations as kernel types and parses the bodies itself.
+
 from functools import lru_cache
 from types import SimpleNamespace
 
@@ -60,15 +63,16 @@ def line_weight(e, f, w, w_f, w_back, first_moving, owner: ti.template()):
     if s != s_f:
         if f == ti.u32(NOTHING):
             out = 1.0 if moves else 0.6
-        elif owner[s] != owner[s_f]:
+        else:
             # the nearer side; where the two touch, always the same one, or the line would jump across
             touching = ti.abs(w - w_f) < TOUCH * w * w
             if (touching and s > s_f) or (not touching and w > w_f):
-                out = 1.0 if moves else (0.45 if touching else 0.6)
-        elif gap > allowed:
-            out = 0.95 if moves else 0.5
-        elif s > s_f and gap > -allowed:
-            out = 0.7 if moves else 0.35
+                if owner[s] != owner[s_f]:
+                    out = 1.0 if moves else (0.45 if touching else 0.6)
+                elif moves:
+                    out = 0.7 if touching else 0.95
+                else:
+                    out = 0.35 if touching else 0.5
     elif gap > allowed and w > w_f:
         out = 0.8 if moves else 0.45
     else:
@@ -144,7 +148,8 @@ def finish_kernels(style: Style) -> SimpleNamespace:
                         if (e ^ g) >> 16 != 0:
                             share = ti.min(broad - 1.0, 1.0)
                             ink = ti.max(
-                                ink, share * line_weight(f, g, w_q, nearness(vis, far), w, first_moving, owner)
+                                ink,
+                                share * line_weight(f, g, w_q, nearness(vis, far), w, first_moving, owner),
                             )
             if ink > 0:
                 c = decode(out, linear)

@@ -6,6 +6,9 @@ A pixel belongs to a triangle when its centre is inside, left and top edges incl
 walked from their upper end, so triangles that share one agree on it to the last bit.
 """
 
+# mypy: ignore-errors
+# Taichi reads annotations as kernel types and parses the bodies itself.
+
 import taichi as ti
 
 NEAR = 0.03  # metres
@@ -66,7 +69,9 @@ def skin(
 
 
 @ti.kernel
-def bound(faces: i2, clusters: i2, first: ti.i32, static_vertices: ti.i32, moments: ti.i32, position: f3, sphere: f3):
+def bound(
+    faces: i2, clusters: i2, first: ti.i32, static_vertices: ti.i32, moments: ti.i32, position: f3, sphere: f3
+):
     """Bounding spheres of the moving clusters (those from ``first`` on) at every moment."""
     count = clusters.shape[0] - first
     for i in range(moments * count):
@@ -195,7 +200,7 @@ def screen(p, scale, half):
 
 @ti.kernel
 def project(view: f2, moment: i1, position: f3, vertices: ti.i32, views: ti.i32, seen: f3):
-    """Screen coordinates (x, y, 1/z) of the skinned vertices in every view; 1/z is -1 behind the near plane."""
+    """Screen coordinates (x, y, 1/z) of the skinned vertices in every view; 1/z is -1 behind the lens."""
     for i in range(views * vertices):
         n = i // vertices
         v = i % vertices
@@ -378,5 +383,15 @@ def raster_atomic(
                 if j == 1:
                     sb, sc = sc, sd
                 fill(
-                    vis, False, n * height * width, width, strip, height, STRIPS, ti.cast(t + 1, ti.u64), sa, sb, sc
+                    vis,
+                    False,
+                    n * height * width,
+                    width,
+                    strip,
+                    height,
+                    STRIPS,
+                    ti.cast(t + 1, ti.u64),
+                    sa,
+                    sb,
+                    sc,
                 )

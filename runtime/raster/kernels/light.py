@@ -5,6 +5,9 @@ A shadow map keeps, per texel of a plane across the light, the greatest distance
 nearer to the light than that, and need no further look.
 """
 
+# mypy: ignore-errors
+# Taichi reads annotations as kernel types and parses the bodies itself.
+
 import taichi as ti
 
 from .geometry import f1, f2, f3, i1, i2, to_pixel, vec3
@@ -24,7 +27,16 @@ def across(basis: ti.template(), p):
 
 
 @ti.kernel
-def fit(position: f3, basis: f1, finest: ti.f32, size: ti.i32, vertices: ti.i32, moments: ti.i32, seen: f3, frame: f2):
+def fit(
+    position: f3,
+    basis: f1,
+    finest: ti.f32,
+    size: ti.i32,
+    vertices: ti.i32,
+    moments: ti.i32,
+    seen: f3,
+    frame: f2,
+):
     """Light coordinates of all vertices, and the frame [M, 3] of each moment's map: its corner across the
     light, and texels a metre.
 
@@ -96,7 +108,9 @@ def cast(
 @ti.func
 def on_map(seen: ti.template(), m, v, frame: ti.template()):
     return vec3(
-        (seen[m, v, 0] - frame[m, 0]) * frame[m, 2], (seen[m, v, 1] - frame[m, 1]) * frame[m, 2], seen[m, v, 2]
+        (seen[m, v, 0] - frame[m, 0]) * frame[m, 2],
+        (seen[m, v, 1] - frame[m, 1]) * frame[m, 2],
+        seen[m, v, 2],
     )
 
 
@@ -137,6 +151,15 @@ def stamp(depth: ti.template(), base, size, a, b, c):
                 w = ti.min(ti.max(row + ti.cast(x, ti.f32) * slope_x, least), most)
                 if w > depth[start + x]:
                     depth[start + x] = w
+
+
+@ti.func
+def offset_point(basis: ti.template(), p, n, m, frame: ti.template()):
+    """Light coordinates of a point lifted off its surface by what the map's coarseness asks for."""
+    texel = 1.0 / frame[m, 2]
+    q = across(basis, p + n * (0.01 + 1.8 * texel))
+    q.z += 0.004 + 0.4 * texel
+    return q
 
 
 @ti.func

@@ -4,6 +4,9 @@ Each gives a factor for the base colour around 1. Joints and grains are filtered
 pixel on the surface and fade out before they could shimmer.
 """
 
+# mypy: ignore-errors
+# Taichi reads annotations as kernel types and parses the bodies itself.
+
 import taichi as ti
 
 from .geometry import vec3
@@ -50,7 +53,7 @@ def fade(blur, period):
 
 @ti.func
 def pattern(material, p, n, blur):
-    """Factor of a material at world point ``p`` on a face of normal ``n``; blur: a pixel's width there, metres."""
+    """Factor of a material at world point ``p``, face normal ``n``; blur: a pixel's width, metres."""
     out = 1.0
     upright = ti.abs(n.z) < 0.7
     u, v = p.x, p.y

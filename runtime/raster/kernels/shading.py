@@ -4,6 +4,9 @@ Work in linear light, encode to sRGB at the end. ``edge`` keeps, per pixel, the 
 half and the normal (octahedral, 8 + 8 bits) in its low half; 0xFFFF0000 is the backdrop.
 """
 
+# mypy: ignore-errors
+# Taichi reads annotations as kernel types and parses the bodies itself.
+
 from functools import lru_cache
 from types import SimpleNamespace
 
@@ -12,7 +15,7 @@ import taichi as ti
 from ..film import FILM_RANGE, FILM_SIZE
 from ..types import Style
 from .geometry import f1, f2, f3, i1, i2, item3, part3, row3, u8s, u32s, u64s, vec3
-from .light import BLOCK, across, lit, unblocked
+from .light import BLOCK, lit, offset_point, unblocked
 from .pattern import broad_pattern, glazed, pattern
 
 NOTHING = 0xFFFF0000
@@ -263,7 +266,7 @@ def shading_kernels(style: Style) -> SimpleNamespace:
                         ambient = under + (sky - under) * (n0.z * 0.5 + 0.5)
                         mark = (ti.cast(info[t, 0], ti.u32) << 16) | pack_normal(n0)
                         if material != 0 and not moves:
-                            # how much longer a pixel is on the surface than across it, tamed at grazing angles
+                            # a pixel's width on the surface at 1 m, tamed at grazing angles
                             ray = first + step * ti.cast(x, ti.f32)
                             cosine = ti.abs(cross.dot(ray)) / ti.max(ray.norm() * cross.norm(), 1e-12)
                             slant = 1.0 / (ti.max(ti.sqrt(cosine), 0.15) * view[n, 13])
@@ -290,13 +293,26 @@ def shading_kernels(style: Style) -> SimpleNamespace:
                                 end_at = eye + (first + step * ti.cast(xx, ti.f32)) * depth
                                 if ti.static(occlusion):
                                     shade_end = sheltered(
-                                        end_at, n0, m, corner, volume_low[3], nx, ny, nz, values, floor, columns, rows, ground
+                                        end_at,
+                                        n0,
+                                        m,
+                                        corner,
+                                        volume_low[3],
+                                        nx,
+                                        ny,
+                                        nz,
+                                        values,
+                                        floor,
+                                        columns,
+                                        rows,
+                                        ground,
                                     )
                                 tone_end = broad_pattern(material, end_at, n0)
                                 if ti.static(shadows):
-                                    q = across(basis, end_at + n0 * 0.02)
+                                    q = offset_point(basis, end_at, n0, m, frame)
+                                    q_set = offset_point(basis, end_at, n0, 0, set_frame)
                                     free_end = unblocked(q, m, frame, size, coarse) and unblocked(
-                                        q, 0, set_frame, set_size, set_coarse
+                                        q_set, 0, set_frame, set_size, set_coarse
                                     )
                                 haze_end = ti.min(ti.max((depth - 2.0) * 0.0144, 0.0), 0.36)
                                 if k == 0:
@@ -355,12 +371,11 @@ def shading_kernels(style: Style) -> SimpleNamespace:
                                 out = base * 2.0 + 0.2
                             else:
                                 key_light = facing
-                                if ti.static(shadows):
+                                if ti.static(shadows):  # noqa: SIM102
                                     if key_light > 0 and (moves or not clear):
-                                        q = across(basis, where + nn * 0.02)
-                                        q.z += 0.006
+                                        q = offset_point(basis, where, nn, m, frame)
                                         key_light *= lit(q, m, frame, size, depth_map, coarse)
-                                        q.z += 0.006
+                                        q = offset_point(basis, where, nn, 0, set_frame)
                                         key_light *= lit(q, 0, set_frame, set_size, set_depth, set_coarse)
                                 albedo = base
                                 if moves:
@@ -381,7 +396,21 @@ def shading_kernels(style: Style) -> SimpleNamespace:
                 x = stop
 
     @ti.func
-    def sheltered(where, nn, m, corner, inverse, nx, ny, nz, values: ti.template(), floor: ti.template(), columns, rows, ground: ti.template()):
+    def sheltered(
+        where,
+        nn,
+        m,
+        corner,
+        inverse,
+        nx,
+        ny,
+        nz,
+        values: ti.template(),
+        floor: ti.template(),
+        columns,
+        rows,
+        ground: ti.template(),
+    ):
         """Share of the ambient light that reaches a point of the set."""
         near = area_near(where + nn * 0.24, corner, inverse, nx, ny, nz, values)
         out = 1.0 - 0.27 * (1.0 - ti.exp(-1.3 * ti.max(near - 0.38, 0.0)))

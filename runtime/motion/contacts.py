@@ -237,6 +237,7 @@ def reach_layer(
     else:
         xy, heading, skeleton = start
         m = 1.0 - 2.0 * hand
+        place = within_reach(place, xy, heading, skeleton)
         shoulder = skeleton.bind[JOINT["upperarm_l"]]
         at = place[len(place) // 2]
         side = xy + m * shoulder[1] * np.array([-np.sin(heading), np.cos(heading)])
@@ -246,6 +247,19 @@ def reach_layer(
         low = np.clip((0.62 * shoulder[2] - at[2]) / 0.6, 0.0, 1.0)
         angles = (float(np.clip(-m * bearing, -0.7, 1.3)), -0.9 * float(low), tilt)
     return Layer(hand, weight, place, np.array(reach.offset) + extra, angles, led)
+
+
+def within_reach(place: Array, xy: Array, heading: float, skeleton: Skeleton) -> Array:
+    """The place [T, 3], or where it is behind or far off, the point one would reach to instead."""
+    at = place[len(place) // 2, :2] - xy
+    distance, bearing = float(np.hypot(*at)), float(wrap(np.arctan2(at[1], at[0]) - heading))
+    far = min(distance, 0.72 * skeleton.height)
+    turn = float(np.clip(bearing, -1.75, 1.75))
+    if distance - far < 1e-6 and abs(bearing - turn) < 1e-6:
+        return place
+    angle = heading + turn
+    shift = xy + far * np.array([np.cos(angle), np.sin(angle)]) - place[len(place) // 2, :2]
+    return place + np.array([shift[0], shift[1], 0.0])
 
 
 def holding_weight(t: Array, spans: list[tuple[float, float]]) -> Array:

@@ -17,6 +17,7 @@ from .curves import plateau, wander
 from .face import GazePull
 from .plan import Event, Plan, Window, add_partner, begin, plan_task
 from .props import Hold, track_prop
+from .rotations import wrap
 from .types import (
     BODY_PLACES,
     Actor,
@@ -146,7 +147,7 @@ class _Scene:
         performer = self.performers[name]
         rng = _rng(self.seed, name, 3)
         turn, down = relative_gaze(eyes[name], performer.yaw, eyes[main])
-        near = np.abs(turn) < 1.9
+        near = 1.0 - np.clip((np.abs(wrap(turn)) - 1.5) / 0.6, 0.0, 1.0)
         away = wander(self.t + 40.0 * rng.random(), rng, 5.0)
         weight = near * (1.0 - np.clip(3.0 * (away - 0.9), 0.0, 1.0)) * plateau(self.t, -1, 0, 1e6, 2e6)
         return [GazePull(turn, down, np.asarray(weight), 0.65)]

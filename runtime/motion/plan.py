@@ -109,8 +109,8 @@ def plan_task(
     if clip.lead:
         duration = max(duration, route.now - clip_start)
     if duration > 0:
-        _play(plan, variant.timeline, start, duration, task)
-        route.now = max(route.now, start + duration)
+        window = _play(plan, variant.timeline, start, duration, task)
+        route.now = max(route.now, window.start + duration)
     plan.end = route.now
 
 
@@ -205,18 +205,40 @@ def _take_needed(plan: Plan, task: Task, props: dict[int, PropState]) -> None:
     grip = prop.world_from_object @ np.array([*prop.grip, 1.0])
     at = TargetPoint((float(grip[0]), float(grip[1]), float(grip[2])), need.gaze, need.object)
     duration = PICK_TIME / task.speed
-    _play(plan, PICK, plan.route.now, duration, replace(task, target=at, second=None))
-    plan.route.now += duration
+    window = _play(plan, PICK, plan.route.now, duration, replace(task, target=at, second=None))
+    plan.route.now = window.start + duration
 
 
-def _play(plan: Plan, timeline: Timeline, start: float, duration: float, task: Task) -> None:
-    """Adds a window and the moments its grasps stand for."""
+def _play(plan: Plan, timeline: Timeline, start: float, duration: float, task: Task) -> Window:
+    """Adds a window and the moments its grasps stand for; turns first to what would be behind."""
     target, second = task.target, task.second
+    if not task.clip.lead:
+        start += _turn_to_reach(plan, timeline, task)
     partner = next((p.character for p in (second, target) if p is not None and p.character), None)
     hands = choose_hands(plan, target, start)
-    plan.windows.append(Window(timeline, start, duration, hands, target, second, partner))
+    window = Window(timeline, start, duration, hands, target, second, partner)
+    plan.windows.append(window)
     for grasp in timeline.grasps:
-        _grasp(plan, grasp, hands, start + grasp.time * duration, target, second, partner)
+        _grasp(plan, grasp, hands, window.at(grasp.time), target, second, partner)
+    return window
+
+
+def _turn_to_reach(plan: Plan, timeline: Timeline, task: Task) -> float:
+    """Seconds spent on turning to the first thing a hand goes to, where that is not before one."""
+    route = plan.route
+    words = [r.to for r in timeline.reaches if r.to in ("target", "second", "meet")]
+    if not words or route.seat is not None:
+        return 0.0
+    point = task.second if words[0] in ("second", "meet") else task.target
+    if point is None or (point.object is not None and point.object in plan.held.values()):
+        return 0.0
+    d = np.array(point.position[:2]) - route.at
+    bearing = float(wrap(np.arctan2(d[1], d[0]) - route.heading))
+    if abs(bearing) < 1.1 or np.hypot(*d) < 0.12:
+        return 0.0
+    began = route.now
+    route.travel(None, route.heading + bearing, WALK, task.speed)
+    return route.now - began
 
 
 def _grasp(

@@ -56,6 +56,10 @@ _N = r"[^\W\d][\w.-]*"
 RULES: tuple[Rule, ...] = (
     # signs no line has
     Rule("(anna wave) say “Hello.”", "“", (), r"([“”„«»])", "texts have straight quotes", 'use `"`', '"'),
+    Rule("(anna wave) / (static full bird's-eye)", "bird's", _STORY, r"(\w+['’]s)(?=[\s-]*eye)", "names have no apostrophe",
+         "as in `birds-eye`"),
+    Rule("(anna wave) 4 s", "4 s", (), r"(?<![\w.-])(\d[\d.]*[ \t]+(?:mm|cm|m|deg|s|f))\b(?![\w-])", "the unit follows the number without a space",
+         "as in `4s`"),
     Rule("(anna wave) say 'Hello.'", "'", (), r"(['’‘])", "texts have double quotes", 'use `"`', '"'),
     Rule("(anna wave) // she smiles", "//", (), r"(//)", "this is no comment", "comments begin with `#`", "#"),
     Rule("(anna walk) lens: 50mm", ":", (), r"(?<![\d ])(:)", "no colon here", "a name and its value stand side by side", ""),

@@ -28,7 +28,7 @@ from .surface import Patch
 from .weights import body_weights, face_weights, rigid, strongest
 
 #: Raised with every change of shape, so that old cache files are not read.
-VERSION = 1
+VERSION = 2
 
 
 @dataclass(frozen=True, eq=False)

@@ -152,8 +152,8 @@ def _arm(f: Figure, p: Points, normals: Points | None) -> tuple[dict[str, Values
     near = 1.0 - ramp(np.hypot(v, w), 0.064 * h, 0.094 * h)
     if normals is not None:
         towards = normals @ ARM_FRAME[2]
-        flank = ramp(towards, -0.45, 0.25) * ramp(-w, 0.002 * h, 0.016 * h) * ramp(u, 0.03 * h, 0.06 * h)
-        near = near * (1.0 - flank * (u < a + 0.5 * b))
+        flank = ramp(towards, -0.20, 0.35) * ramp(-w, 0.002 * h, 0.016 * h) * ramp(u, 0.03 * h, 0.06 * h)
+        near = near * (1.0 - flank * (1.0 - ramp(u, 0.85 * a, 1.05 * a)))
     s = 0.978 * d[:, 1] - 0.208 * d[:, 2]
     m1, m2 = ramp(s, -0.022 * h, 0.026 * h) * near, ramp(s, 0.010 * h, 0.066 * h) * near
     e1, e2 = ramp(u, a - 0.036 * h, a + 0.003 * h), ramp(u, a - 0.003 * h, a + 0.036 * h)

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from scipy import ndimage
 
+from runtime.mesh import MATERIALS
 from runtime.shapes import volume
 from runtime.world import World
 from vdsl.lang.definitions.prop import PropDef
@@ -354,3 +355,13 @@ def test_windows_are_dark_at_night() -> None:
     changed = (day.mesh.colors != night.mesh.colors).any(1)
     assert changed.any()
     assert night.mesh.colors[changed].mean() < 0.6 * day.mesh.colors[changed].mean()
+
+
+def test_houses_are_lit_at_night_and_shelters_are_not() -> None:
+    w = world("suburb_street", "night")
+    glow = set(w.mesh_object[w.mesh.materials == MATERIALS.index("glow")].tolist())
+    kinds = {w.objects[i].kind for i in glow}
+    assert "house" in kinds
+    assert "far_house" in kinds
+    assert not kinds & {"bus_shelter", "car"}
+    assert not (w.mesh.materials == MATERIALS.index("glass")).any()

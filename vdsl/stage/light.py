@@ -40,7 +40,7 @@ _OUTDOORS = {
     "dusk": _Hour(22, 205, (1.08, 0.86, 0.60), (0.66, 0.71, 0.82), (0.54, 0.54, 0.55),
                   ((0.96, 0.86, 0.76), (0.62, 0.69, 0.83)), (0.99, 0.78, 0.58), 0.8),
     "night": _Hour(56, 215, (0.42, 0.46, 0.62), (0.34, 0.39, 0.54), (0.25, 0.27, 0.36),
-                   ((0.36, 0.42, 0.56), (0.17, 0.22, 0.36)), (0.93, 0.80, 0.55), 0.75),
+                   ((0.36, 0.42, 0.56), (0.17, 0.22, 0.36)), (0.24, 0.30, 0.46), 0.8),
 }  # fmt: skip
 
 #: Indoors walls throw much of the light back: more fill, less key. At night the lamps are on.
@@ -54,6 +54,10 @@ _INDOORS = {
     "night": _Hour(64, 215, (0.70, 0.56, 0.36), (0.76, 0.69, 0.65), (0.68, 0.59, 0.52),
                    ((0.42, 0.43, 0.50), (0.42, 0.43, 0.50)), (0.24, 0.30, 0.46), 0.9),
 }  # fmt: skip
+
+
+#: A lit window seen from the street at night.
+LAMPLIGHT: Colour = (0.93, 0.80, 0.55)
 
 
 def _hour(time: str, outdoor: bool) -> _Hour:
@@ -98,7 +102,6 @@ def window_azimuth(definition: SetDef, room: tuple[str, ...]) -> float | None:
 
 def glass_tint(time: str, outdoor: bool) -> tuple[Colour, float, str]:
     """The colour window panes take at a time of day, how much of it (0..1), and as what they are drawn:
-    at night a pane seen from inside is dark, and one seen from the street has a lamp behind it."""
+    at night glass is dark, save where somebody is at home behind it (:data:`LAMPLIGHT`)."""
     hour = _hour(time, outdoor)
-    material = "glass" if time != "night" else "glow" if outdoor else "plain"
-    return hour.glass, hour.glass_share, material
+    return hour.glass, hour.glass_share, "plain" if time == "night" else "glass"

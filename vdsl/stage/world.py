@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from runtime.mesh import MATERIALS, Mesh, join
-from runtime.shapes import Colour, painted
+from runtime.shapes import painted
 from runtime.world import Solids, Spot, Wall, World, WorldObject
 
 from ..lang.definitions.prop import PropSpot
@@ -29,7 +29,7 @@ from ..lang.definitions.set import (
     find_prop,
 )
 from ..lang.diagnostics import Report
-from .light import glass_tint, make_light
+from .light import LAMPLIGHT, glass_tint, make_light
 from .props import BuiltProp, build_prop, placement
 from .standing import clear_spot
 from .walls import (
@@ -112,7 +112,7 @@ class _Builder:
             self._ground()
 
     def world(self, time: str, room: tuple[str, ...]) -> World:
-        mesh = _glazed(join(self.meshes), *glass_tint(time, self.definition.outdoor))
+        mesh = self._glazed(join(self.meshes), time)
         solids = self._packed_solids()
         kept = [_with_clear_spots(o, solids, self.floors) for o in self.objects]
         walls = tuple(Wall(s.point(s.start), s.point(s.end), s.height) for s in self.walls)
@@ -128,6 +128,23 @@ class _Builder:
             make_light(self.definition, time, room),
             self.definition.outdoor,
         )
+
+    def _glazed(self, mesh: Mesh, time: str) -> Mesh:
+        """Glass takes the colour of the hour; at night houses have light in their windows."""
+        tint, share, material = glass_tint(time, self.definition.outdoor)
+        glass = mesh.materials == MATERIALS.index("glass")
+        if share <= 0 or not glass.any():
+            return mesh
+        colors, materials = mesh.colors.copy(), mesh.materials.copy()
+        own = colors[glass]
+        relative = own.mean(1, keepdims=True) / max(float(own.mean()), 1e-6)
+        colors[glass] = (1 - share) * own + share * np.clip(np.asarray(tint, np.float32) * relative, 0, 1)
+        materials[glass] = MATERIALS.index(material)
+        if time == "night":
+            homes = [o.id for o in self.objects if o.kind.endswith("house")]
+            lit = glass & np.isin(np.concatenate(self.mesh_object), homes)
+            colors[lit], materials[lit] = LAMPLIGHT, MATERIALS.index("glow")
+        return Mesh(mesh.vertices, mesh.faces, mesh.normals, colors, mesh.parts, materials)
 
     def _packed_solids(self) -> Solids:
         return Solids(
@@ -362,17 +379,3 @@ def _with_clear_spots(
         if clear is not None:
             spots.append(clear)
     return replace(item, spots=tuple(spots))
-
-
-def _glazed(mesh: Mesh, tint: Colour, share: float, material: str) -> Mesh:
-    """Glass takes the colour of the hour."""
-    glass = mesh.materials == MATERIALS.index("glass")
-    if share <= 0 or not glass.any():
-        return mesh
-    colors = mesh.colors.copy()
-    relative = colors[glass].mean(1, keepdims=True) / max(float(colors[glass].mean()), 1e-6)
-    colors[glass] = (1 - share) * colors[glass] + share * np.clip(
-        np.asarray(tint, np.float32) * relative, 0, 1
-    )
-    materials = np.where(glass, MATERIALS.index(material), mesh.materials).astype(np.int32)
-    return Mesh(mesh.vertices, mesh.faces, mesh.normals, colors, mesh.parts, materials)

@@ -20,7 +20,8 @@ from .anatomy import Figure
 from .features import head_pieces, limb_pieces
 from .field import gradient
 from .head import Head
-from .outfit import bare_legs, bottom, shoes, top
+from .legwear import bare_legs, bottom, shoes
+from .outfit import top
 from .pieces import PARTS, Piece, other_side, tucked
 from .skeleton import PALETTE, Skeleton
 from .spec import BodySpec

@@ -205,7 +205,9 @@ def _interest(
         return np.ones(len(camera))
     xy, depth = project(points[None], camera, axes, takes.track.focal[:, at], takes.track.sensor)
     inside = (depth > 0.05) & (xy > 0.02).all(-1) & (xy < 0.98).all(-1)
-    return _mean((inside & seen).mean(axis=-1), takes.window)
+    shown = (inside & seen).mean(axis=-1)
+    # a pan may lead from the subject to the other one, so both parts of the time count
+    return np.maximum(_mean(shown, takes.window), _mean(shown, ~takes.window))
 
 
 def _foreground(

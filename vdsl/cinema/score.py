@@ -11,14 +11,14 @@ from numpy.typing import NDArray
 WEIGHTS = {
     "visibility": 0.14,
     "in_frame": 0.14,
-    "face": 0.14,
-    "interest": 0.14,
+    "face": 0.19,
+    "interest": 0.11,
     "size": 0.08,
     "headroom": 0.08,
     "lead_room": 0.06,
     "thirds": 0.06,
     "clearance": 0.06,
-    "steadiness": 0.10,
+    "steadiness": 0.08,
 }
 
 
@@ -26,12 +26,14 @@ def parts(measures: Mapping[str, NDArray[np.float64] | float]) -> dict[str, NDAr
     """Every part of the score in 0..1, best 1 (see docs/cinema.md)."""
     m = {k: np.asarray(v, float) for k, v in measures.items()}
     calm = np.exp(-((m["angular_speed"] / 70.0) ** 2)) * np.exp(-((m["speed"] / 3.0) ** 2))
+    # three-quarter to frontal is best; from straight behind is worst
+    face = np.clip((m["face"] + 0.75) / 1.45, 0.0, 1.0)
     return {
         "visibility": m["visibility"] * (0.5 + 0.5 * m["head_visible"]),
         "in_frame": m["in_frame"],
-        "interest": m["interest"],
-        # three-quarter to frontal is best; from straight behind is worst
-        "face": np.clip((m["face"] + 0.75) / 1.45, 0.0, 1.0),
+        # the back of a head is not made up for by whom it looks at
+        "interest": m["interest"] * np.minimum(1.5 * face, 1.0),
+        "face": face,
         "size": np.exp(-((m["size_drift"] / 0.7) ** 2)),
         "headroom": np.exp(-((m["headroom_error"] / 0.12) ** 2)),
         "lead_room": np.clip(0.7 + 1.5 * m["lead_room"], 0.0, 1.0),

@@ -277,6 +277,8 @@ def _before_seat(seat: Spot, world: World, people: Discs, start: tuple[float, fl
     x = seat.position[0] + 0.55 * math.cos(facing)
     y = seat.position[1] + 0.55 * math.sin(facing)
     found = nearest_free(world, (x, y), people, within=0.7, start=start)
+    if found is None:  # a chair pushed in: from the side or from behind
+        found = nearest_free(world, seat.position[:2], people, within=1.3, start=start)
     return None if found is None else Stop(*found, facing)
 
 

@@ -226,8 +226,10 @@ class _Scene:
         if reach.to in ("target", "second"):
             point = window.second if reach.to == "second" else window.target
             place = self._point(point, held_id, arrive)
+            puts = held_id is not None and self._put_here(window, side)
+            if puts:
+                place = self._put_at(performer.plan.name, side, held_id)
             if held is not None:
-                puts = self._put_here(window, side)
                 led = (held, "spout") if tipped else (held, "foot") if puts else None
                 extra[2] = 0.003 if puts else 0.0
             if held is None and point is not None and point.object in self.rest:
@@ -250,6 +252,12 @@ class _Scene:
 
     def _put_here(self, window: Window, side: str) -> bool:
         return any(g.kind == "put" and window.hands[g.hand] == side for g in window.timeline.grasps)
+
+    def _put_at(self, name: str, side: str, thing: int | None) -> Array | None:
+        """Where the thing in a hand is going to stand [T, 3]."""
+        holds = self.holds.get(thing, []) if thing is not None else []
+        place = next((h.place for h in holds if h.person == name and h.hand == side and h.place), None)
+        return None if place is None else np.broadcast_to(np.asarray(place), (len(self.t), 3))
 
     def _point(self, point: TargetPoint | None, held: int | None, time: float) -> Array | None:
         """A target's contact point [T, 3] in the world; where a thing to be put down is to stand."""
@@ -318,7 +326,8 @@ class _Scene:
             holds = self.holds.get(k, [])
             last = holds[-1] if holds else None
             holder = (last.person, last.hand) if last is not None and last.end > 1e8 else None
-            out[k] = PropState(self.props[k][-1].astype(np.float64), prop.grip, holder)
+            home = prop.stands if holder is not None else None
+            out[k] = PropState(self.props[k][-1].astype(np.float64), prop.grip, holder, home)
         return out
 
 

@@ -70,6 +70,7 @@ class Plan:
     actor: Actor
     route: Route
     held: dict[str, int]
+    homes: dict[int, Point] = field(default_factory=dict)
     windows: list[Window] = field(default_factory=list)
     events: list[Event] = field(default_factory=list)
     end: float = 0.0
@@ -94,6 +95,7 @@ def plan_task(
     clip, route = task.clip, plan.route
     variant = clip.variant(task.variant)
     plan.acts = True
+    plan.homes = {k: p.stands for k, p in props.items() if p.stands is not None}
     route.wait(delay)
     clip_start = route.now
     if task.fetch is not None:
@@ -259,7 +261,9 @@ def _grasp(
     elif hand in plan.held:
         thing = plan.held[hand]
         if grasp.kind == "put":
-            place = put_place(thing, target, second)
+            place = put_place(thing, target, second) or _home(plan, thing)
+            if place is None:
+                return  # nowhere to put it: it stays in the hand
             del plan.held[hand]
             plan.events.append(Event(time, "put", plan.name, hand, thing, place=place))
         elif partner is not None:
@@ -273,6 +277,14 @@ def put_place(thing: int, target: TargetPoint | None, second: TargetPoint | None
         if point is not None and point.object != thing and point.character is None:
             return point.position
     return None
+
+
+def _home(plan: Plan, thing: int) -> Point | None:
+    """Where a thing was taken from, if one can put it back without a step."""
+    place = plan.homes.get(thing)
+    if place is None or np.hypot(*(np.array(place[:2]) - plan.route.at)) > 1.25:
+        return None
+    return place
 
 
 def choose_hands(plan: Plan, target: TargetPoint | None, time: float) -> dict[str, str]:

@@ -71,11 +71,23 @@ class TargetPoint:
 
 @dataclass(frozen=True, eq=False)
 class PropState:
-    """A movable thing: float64 [4, 4] world_from_object, its grip in object coordinates, and who holds it."""
+    """A movable thing: float64 [4, 4] world_from_object, its grip in object coordinates, and who holds it.
+
+    home: where it stood before it was taken, and is put back to where no other place is named
+    """
 
     world_from_object: NDArray[np.float64]
     grip: Point
     holder: tuple[str, str | None] | None = None
+    home: Point | None = None
+
+    @property
+    def stands(self) -> Point | None:
+        """Where it stands, or last stood; None for a thing that has been held all along."""
+        if self.holder is not None:
+            return self.home
+        x, y, z = (float(v) for v in self.world_from_object[:3, 3])
+        return (x, y, z)
 
 
 # --- clips --------------------------------------------------------------------------------

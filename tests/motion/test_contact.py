@@ -74,6 +74,17 @@ def test_put_down_leaves_it_where_it_was_asked() -> None:
     assert steps[-6:].max() < 1e-6
 
 
+def test_a_thing_put_down_nowhere_in_particular_goes_back_where_it_stood() -> None:
+    first = pick(1.7, 0.45, -0.1, 0.74)
+    actors = {"a": person(1.7, held=first.end_actors["a"].held)}
+    task = Task(clips()["put-down"], target=at(0.4, -0.1, 1.0, object=CUP))
+    motion = perform(actors, {"a": task}, first.end_props, FPS, 2)
+    assert np.allclose(motion.end_props[CUP].world_from_object[:3, 3], (0.45, -0.1, 0.74), atol=1e-3)
+    assert motion.end_actors["a"].held == ()
+    far = perform({"a": person(1.7, 4.0, held=actors["a"].state.held)}, {"a": task}, first.end_props, FPS, 2)
+    assert far.end_actors["a"].held == actors["a"].state.held  # better in the hand than in the air
+
+
 def test_pouring_takes_the_bottle_first_and_tips_it_over_the_cup() -> None:
     cup, bottle = thing(0.45, 0.05, 0.74), thing(0.45, -0.3, 0.74, 0.12)
     into, from_ = at(0.45, 0.05, 0.79, object=8), at(0.45, -0.3, 0.86, object=CUP)

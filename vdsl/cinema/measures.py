@@ -38,6 +38,7 @@ MEASURES = (
     "lead_room",  # more room ahead of the face than behind: −1..1, 0 where it looks at the camera
     "thirds_error",  # distance of the eyes from the upper third, share of the frame's height
     "interest",  # share of the other points that matter (thing in hand, partner) in the frame and not hidden
+    "empty",  # share of the time in which neither the subject's head nor any of those points is in the frame
     "foreground",  # share of the picture covered by something much nearer than the subject
     "face",  # cosine between face and direction to the camera: 1 frontal, 0 profile, −1 from behind
     "clearance",  # metres from the camera to the nearest solid or person, at most 1
@@ -110,7 +111,10 @@ def measure(takes: Takes, subject: Subject, world: World, fps: float) -> Measure
     )
     count = len(sight_index)
     values |= _visibility(takes, inside[:, :, sight_index], seen[..., :count])
-    values["interest"] = _interest(takes, at, camera, axes, sight[:, count:], seen[..., count:])
+    shown = _shown(takes, at, camera, axes, sight[:, count:], seen[..., count:])
+    values["interest"] = _interest(takes, shown)
+    somebody = inside[:, :, names.index("eyes")] | shown.any(axis=-1)
+    values["empty"] = 1.0 - somebody.mean(axis=1)
     values["foreground"] = _foreground(takes, world, at, camera, axes, picture, hidden)
     values |= _motion(track, takes.roll, fps)
     values["face"] = _face(takes, subject, at, camera, points[:, names.index("eyes")])
@@ -198,16 +202,22 @@ def _visibility(takes: Takes, inside: Bools, seen: Bools) -> dict[str, Array]:
     return {"visibility": clear / np.maximum(shown, 1), "head_visible": head}
 
 
-def _interest(
+def _shown(
     takes: Takes, at: NDArray[np.int64], camera: Array, axes: Array, points: Array, seen: Bools
-) -> Array:
+) -> Bools:
+    """Which of the other points that matter are in the frame and not hidden, [P, F, K]."""
     if not points.shape[1]:
-        return np.ones(len(camera))
+        return np.zeros((*camera.shape[:2], 0), bool)
     xy, depth = project(points[None], camera, axes, takes.track.focal[:, at], takes.track.sensor)
-    inside = (depth > 0.05) & (xy > 0.02).all(-1) & (xy < 0.98).all(-1)
-    shown = (inside & seen).mean(axis=-1)
+    return (depth > 0.05) & (xy > 0.02).all(-1) & (xy < 0.98).all(-1) & seen
+
+
+def _interest(takes: Takes, shown: Bools) -> Array:
+    if not shown.shape[2]:
+        return np.ones(len(shown))
+    share = shown.mean(axis=-1)
     # a pan may lead from the subject to the other one, so both parts of the time count
-    return np.maximum(_mean(shown, takes.window), _mean(shown, ~takes.window))
+    return np.maximum(_mean(share, takes.window), _mean(share, ~takes.window))
 
 
 def _foreground(

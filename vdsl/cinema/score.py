@@ -46,8 +46,8 @@ def parts(measures: Mapping[str, NDArray[np.float64] | float]) -> dict[str, NDAr
 def geometry_scores(measures: Mapping[str, NDArray[np.float64] | float]) -> NDArray[np.float64]:
     """Scores 0..1 of takes whose measures are arrays [P]."""
     total = sum(WEIGHTS[name] * value for name, value in parts(measures).items())
-    gaps, near = (np.asarray(measures[k], float) for k in ("backdrop_gap", "foreground"))
-    return np.asarray(total * (1.0 - 0.5 * gaps) * (1.0 - 0.6 * near))
+    gaps, near, empty = (np.asarray(measures[k], float) for k in ("backdrop_gap", "foreground", "empty"))
+    return np.asarray(total * (1.0 - 0.5 * gaps) * (1.0 - 0.6 * near) * (1.0 - 0.3 * empty))
 
 
 def geometry_score(measures: Mapping[str, float]) -> float:

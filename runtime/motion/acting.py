@@ -16,8 +16,9 @@ from .channels import Channels
 from .contacts import Contacts, HandTracks
 from .curves import below, delayed, plateau, ramp, smooth, wander
 from .face import GazePull, Look, blinks, look, speech
+from .feet import ankle_positions
 from .figure import MIRROR, ArmPose, Figure, HandGoals, palm_offset, palm_rotation
-from .gait import ankle_positions, level_thigh, sit_clearance
+from .gait import level_thigh, sit_clearance
 from .plan import Plan
 from .rotations import norm, turned, wrap
 

@@ -1,0 +1,310 @@
+"""Posing everybody of a shot, stage by stage: gaze, torso, hands, then the things they hold."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .acting import Performer, fade, relative_gaze
+from .contacts import SIDE, Contacts, HandTracks, Held, Layer, holding_weight, reach_layer
+from .curves import plateau, wander
+from .face import GazePull
+from .plan import Event, Plan, Window
+from .props import Hold, track_prop
+from .rotations import wrap
+from .types import (
+    BODY_PLACES,
+    Gaze,
+    PropState,
+    Reach,
+    TargetPoint,
+    Task,
+)
+
+Array = NDArray[np.float64]
+
+
+class Scene:
+    """The stages of posing everybody, in the order of :meth:`run`."""
+
+    def __init__(
+        self,
+        plans: dict[str, Plan],
+        tasks: dict[str, Task],
+        props: dict[int, PropState],
+        t: Array,
+        fps: float,
+        seed: int,
+    ) -> None:
+        self.plans, self.tasks, self.t, self.fps = plans, tasks, t, fps
+        self.rest = props
+        self.seed = seed
+        self.performers = {n: Performer(p, t, fps, seeded(seed, n, 2)) for n, p in plans.items()}
+        self.holds = _holds(plans, props)
+        self.props: dict[int, Array] = {}
+
+    def run(self) -> None:
+        eyes = {n: p.eye_point() for n, p in self.performers.items()}
+        palms: dict[str, Array] = {}
+        self.tracks: dict[str, HandTracks] = {}
+        for name, performer in self.performers.items():
+            performer.talk()
+            performer.gaze(self._pulls(name, eyes))
+            self.tracks[name] = self._tracks(name)
+            performer.reach_body(self.tracks[name])
+            palms[name] = performer.arms(Contacts(self.tracks[name]))
+            performer.face()
+        hands = {n: p.figure for n, p in self.performers.items()}
+        for k, prop in self.rest.items():
+            self.props[k] = track_prop(prop, self.holds.get(k, []), self.t, palms, hands, self.tracks,
+                                       {n: p.goal_rotation for n, p in self.performers.items()})  # fmt: skip
+
+    # -- gaze ------------------------------------------------------------------------------
+
+    def _pulls(self, name: str, eyes: dict[str, Array]) -> list[GazePull]:
+        performer = self.performers[name]
+        plan = performer.plan
+        pulls = []
+        if not plan.acts:
+            pulls += self._watching(name, eyes)
+        for window in plan.windows:
+            for gaze in window.timeline.gazes:
+                start = window.at(gaze.start)
+                end = window.at(gaze.end) if gaze.end < 1.0 else 1e9  # to the end: on into what follows
+                weight = fade(self.t, start, end)
+                pulls.append(self._pull(performer, gaze, window, weight, eyes))
+        return pulls
+
+    def _watching(self, name: str, eyes: dict[str, Array]) -> list[GazePull]:
+        """Who has nothing to do looks at who acts, and sometimes elsewhere."""
+        main = next((n for n in self.tasks if n != name), None)
+        main = main or next((n for n in eyes if n != name), None)
+        if main is None:
+            return []
+        performer = self.performers[name]
+        rng = seeded(self.seed, name, 3)
+        turn, down = relative_gaze(eyes[name], performer.yaw, eyes[main])
+        near = 1.0 - np.clip((np.abs(wrap(turn)) - 1.5) / 0.6, 0.0, 1.0)
+        away = wander(self.t + 40.0 * rng.random(), rng, 5.0)
+        weight = near * (1.0 - np.clip(3.0 * (away - 0.9), 0.0, 1.0)) * plateau(self.t, -1, 0, 1e6, 2e6)
+        return [GazePull(turn, down, np.asarray(weight), 0.65)]
+
+    def _pull(
+        self, performer: Performer, gaze: Gaze, window: Window, weight: Array, eyes: dict[str, Array]
+    ) -> GazePull:
+        zero = np.zeros(len(self.t))
+        fixed = {"ahead": (0.0, 0.0), "down": (0.0, 0.55), "up": (0.15, -0.35), "aside": (0.55, 0.08)}
+        if gaze.to in fixed:
+            turn, down = fixed[gaze.to]
+            return GazePull(zero + turn, zero + down, weight, gaze.share)
+        if gaze.to == "around":
+            rng = seeded(self.seed, performer.plan.name, 4)
+            turn_track = 0.75 * wander(self.t, rng, 3.2)
+            return GazePull(turn_track, 0.12 * wander(self.t, rng, 2.6), weight, gaze.share)
+        if gaze.to == "held":
+            side = -1.0 if window.hands.get("holding") == "r" else 1.0
+            return GazePull(zero + 0.25 * side, zero + 0.6, weight, gaze.share)
+        point = window.second if gaze.to == "second" else window.target
+        who = window.partner if gaze.to == "partner" else point.character if point is not None else None
+        if who is not None and who in eyes:
+            at = eyes[who]
+        elif point is not None:
+            at = np.asarray(point.gaze, dtype=np.float64)
+        else:
+            return GazePull(zero, zero, 0.0 * weight, gaze.share)
+        eye = eyes[performer.plan.name]
+        turn_to, down_to = relative_gaze(eye, performer.yaw, at)
+        return GazePull(turn_to, down_to, weight, gaze.share)
+
+    # -- hands ------------------------------------------------------------------------------
+
+    def _tracks(self, name: str) -> HandTracks:
+        performer = self.performers[name]
+        t, plan = self.t, performer.plan
+        carry = np.zeros((2, len(t)))
+        for k, side in enumerate("lr"):
+            spans = [s for holds in self.holds.values() for s in _spans(holds, name, side)]
+            carry[k] = holding_weight(t, spans)
+        tilt, dip = np.zeros((2, len(t))), np.zeros((2, len(t)))
+        weight = performer.channels.pair("arm", "weight")
+        lap = performer.sitting * (1 - weight) * (1 - carry)
+        layers = []
+        if performer.sitting.max() > 0:
+            layers = [Layer(k, lap[k], "lap", np.zeros(3), (0.35, -0.15, 1.35)) for k in (0, 1)]
+        for window in plan.windows:
+            for tip in window.timeline.tilts:
+                times = [window.at(x) for x in (tip.start, tip.arrive, tip.leave, tip.end)]
+                side = window.hands[tip.hand]
+                held = self._held(name, side, times[1])
+                if held is not None and held.handle and not _to_body(window, side):
+                    dip[SIDE[side]] += 0.55 * tip.angle * plateau(t, *times)  # a pot is tipped forward
+                else:
+                    tilt[SIDE[side]] += tip.angle * plateau(t, *times)
+            for reach in window.timeline.reaches:
+                layer = self._reach(performer, window, reach)
+                if layer is not None:
+                    layers.append(layer)
+        return HandTracks(t, performer.yaw, carry, (tilt, dip), layers, performer.skeleton)
+
+    def _reach(self, performer: Performer, window: Window, reach: Reach) -> Layer | None:
+        side = window.hands[reach.hand]
+        k = SIDE[side]
+        arrive = window.at(reach.arrive)
+        held_id = self._held_id(performer.plan.name, side, arrive + 1e-3)
+        held = self._held(performer.plan.name, side, arrive + 1e-3)
+        extra = np.zeros(3)
+        fingers = None
+        led: tuple[Held, str] | None = None
+        tipped = held is not None and any(
+            window.hands[x.hand] == side and x.start < reach.end and x.end > reach.start
+            for x in window.timeline.tilts
+        )
+        place: Array | str | None
+        if reach.to in ("target", "second"):
+            point = window.second if reach.to == "second" else window.target
+            place = self._point(point, held_id, arrive)
+            puts = held_id is not None and self._put_here(window, side)
+            if puts:
+                place = self._put_at(performer.plan.name, side, held_id)
+            if held is not None:
+                led = (held, "spout") if tipped else (held, "foot") if puts else None
+                extra[2] = 0.003 if puts else 0.0
+            if held is None and point is not None and point.object in self.rest:
+                there = self.rest[point.object]
+                thing = Held(arrive, there.world_from_object[:3, :3], np.asarray(there.grip))
+                fingers = thing.axis_yaw if thing.handle else None
+        elif reach.to == "meet":
+            place = self._meet(performer, window, arrive)
+        else:
+            place = reach.to
+            if held is not None and tipped:
+                led = (held, "rim")
+                extra[0] = 0.03
+        if place is None:
+            return None
+        xy, heading = performer.plan.route.root(np.array([arrive]))
+        return reach_layer(reach, k, (window.start, window.duration), self.t, place,
+                           (xy[0], float(heading[0]), performer.skeleton), led,
+                           extra, fingers)  # fmt: skip
+
+    def _put_here(self, window: Window, side: str) -> bool:
+        return any(g.kind == "put" and window.hands[g.hand] == side for g in window.timeline.grasps)
+
+    def _put_at(self, name: str, side: str, thing: int | None) -> Array | None:
+        """Where the thing in a hand is going to stand [T, 3]."""
+        holds = self.holds.get(thing, []) if thing is not None else []
+        place = next((h.place for h in holds if h.person == name and h.hand == side and h.place), None)
+        return None if place is None else np.broadcast_to(np.asarray(place), (len(self.t), 3))
+
+    def _point(self, point: TargetPoint | None, held: int | None, time: float) -> Array | None:
+        """A target's contact point [T, 3] in the world; where a thing to be put down is to stand."""
+        if point is None:
+            return None
+        at = np.asarray(point.position, dtype=np.float64)
+        if point.object is not None and point.object in self.rest and point.object != held:
+            prop = self._prop_before(point.object, time)
+            at = (prop @ np.array([*self.rest[point.object].grip, 1.0]))[:3]
+        elif point.object is not None and point.object == held:
+            return None
+        if point.character is not None and point.character in self.performers:
+            other = self.performers[point.character]
+            h = other.height
+            xy = other.root
+            return np.concatenate([xy, np.full((len(xy), 1), 0.80 * h)], axis=1) * np.array([1.0, 1.0, 1.0])
+        return np.broadcast_to(at, (len(self.t), 3))
+
+    def _prop_before(self, thing: int, time: float) -> Array:
+        """Where a thing lies before ``time`` (put-downs of this shot count)."""
+        matrix = self.rest[thing].world_from_object
+        for hold in self.holds.get(thing, []):
+            if hold.end < time and hold.place is not None:
+                matrix = matrix.copy()
+                matrix[:3, 3] = hold.place
+        return matrix
+
+    def _meet(self, performer: Performer, window: Window, time: float) -> Array | None:
+        other = self.performers.get(window.partner or "")
+        if other is None:
+            return None
+        i = min(int(time * self.fps), len(self.t) - 1)
+        mine, theirs = performer.root[i], other.root[i]
+        gap = theirs - mine
+        middle = 0.5 * (mine + theirs) - 0.045 * gap / max(float(np.linalg.norm(gap)), 1e-6)
+        low = [p.eye_point()[i, 2] - 0.30 * p.height for p in (performer, other)]
+        return np.broadcast_to(np.array([*middle, 0.5 * sum(low)]), (len(self.t), 3))
+
+    def _held(self, name: str, side: str, time: float) -> Held | None:
+        """The thing in a hand just before ``time``, as it was when that hand took it."""
+        thing = self._held_id(name, side, time)
+        if thing is None:
+            return None
+        prop = self.rest[thing]
+        hold = next(h for h in reversed(self.holds[thing]) if h.person == name and h.hand == side)
+        return Held(hold.start, prop.world_from_object[:3, :3], np.asarray(prop.grip))
+
+    def _held_id(self, name: str, side: str, time: float) -> int | None:
+        for thing, holds in self.holds.items():
+            for hold in holds:
+                if hold.person == name and hold.hand == side and hold.start < time <= hold.end + 1e-3:
+                    return thing
+        return None
+
+    # -- the end ------------------------------------------------------------------------------
+
+    def held_at_end(self, name: str) -> tuple[tuple[str, int], ...]:
+        pairs = [
+            (h[-1].hand, k) for k, h in self.holds.items() if h and h[-1].person == name and h[-1].end > 1e8
+        ]
+        return tuple(sorted(pairs))
+
+    def end_props(self) -> dict[int, PropState]:
+        out = {}
+        for k, prop in self.rest.items():
+            holds = self.holds.get(k, [])
+            last = holds[-1] if holds else None
+            holder = (last.person, last.hand) if last is not None and last.end > 1e8 else None
+            home = prop.stands if holder is not None else None
+            out[k] = PropState(self.props[k][-1].astype(np.float64), prop.grip, holder, home)
+        return out
+
+
+def _holds(plans: dict[str, Plan], props: dict[int, PropState]) -> dict[int, list[Hold]]:
+    """Who holds each thing when, from the starting states and the planned events."""
+    holds: dict[int, list[Hold]] = {}
+    for name, plan in plans.items():
+        for hand, thing in plan.actor.state.held:
+            if thing in props:
+                holds.setdefault(thing, []).append(Hold(name, hand, -1e9, 1e9, None))
+    for event in sorted((e for p in plans.values() for e in p.events), key=lambda e: e.time):
+        if event.object not in props:
+            continue
+        mine = holds.setdefault(event.object, [])
+        if mine:
+            mine[-1] = Hold(mine[-1].person, mine[-1].hand, mine[-1].start, event.time, event.place)
+        if event.kind == "take":
+            mine.append(Hold(event.person, event.hand, event.time, 1e9, None))
+        elif event.kind == "pass" and event.receiver in plans:
+            mine.append(Hold(event.receiver, _receiving(plans[event.receiver], event), event.time, 1e9, None))
+    return holds
+
+
+def _receiving(plan: Plan, event: Event) -> str:
+    window = next((w for w in plan.windows if w.partner == event.person), None)
+    if window is None:
+        return "r"
+    reach = next((r for r in window.timeline.reaches if r.to == "meet"), None)
+    return window.hands[reach.hand if reach is not None else "free"]
+
+
+def _to_body(window: Window, side: str) -> bool:
+    """Whether that hand goes to the person's own body in this window, as for drinking."""
+    return any(r.to in BODY_PLACES and window.hands[r.hand] == side for r in window.timeline.reaches)
+
+
+def _spans(holds: list[Hold], person: str, hand: str) -> list[tuple[float, float]]:
+    return [(h.start, h.end) for h in holds if h.person == person and h.hand == hand]
+
+
+def seeded(seed: int, name: str, purpose: int) -> np.random.Generator:
+    """A generator for one person and one purpose."""
+    return np.random.default_rng([seed & 0xFFFFFFFF, purpose, *name.encode()])

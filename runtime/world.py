@@ -109,7 +109,8 @@ class World:
     """A built set.
 
     mesh: everything that never moves, world coordinates
-    mesh_object: int32 [F], object id of each face; mesh_wall: int32 [F], wild wall of each face or -1
+    mesh_object: int32 [F], object id of each face; mesh_wall: int32 [F], wild wall of each face, -1 for none,
+        or -2 for faces seen from their front only (ceilings, so that a camera may look in from above)
     floors: walkable rectangles (x0, y0, x1, y1) in metres, joined where they touch or through door gaps
     """
 

@@ -17,7 +17,7 @@ from scipy.sparse.csgraph import connected_components
 from ..mesh import MATERIALS, Mesh
 from .bake import Volume, key_casters, occlusion_volume, stage_bounds
 from .film import to_linear
-from .types import RenderScene, Style
+from .types import ONE_SIDED, RenderScene, Style
 
 CLUSTER = 64  # triangles
 WELD = 1e-5  # metres
@@ -165,9 +165,11 @@ def quieted(color: NDArray[np.floating], quiet: float) -> NDArray[np.float64]:
 def prepare(scene: RenderScene, style: Style) -> Prepared:
     """Check, order and pack a scene. Raises ValueError."""
     check(scene)
-    static_cull = closed_faces(scene.static, scene.static_object)
+    one_sided = scene.static_wall == ONE_SIDED
+    static_wall = np.where(one_sided, np.int32(-1), scene.static_wall)
+    static_cull = closed_faces(scene.static, scene.static_object) | one_sided
     moving_cull = closed_faces(scene.skinned, scene.skinned_object)
-    order, clusters = _clusters(scene.static, scene.static_object, scene.static_wall, static_cull)
+    order, clusters = _clusters(scene.static, scene.static_object, static_wall, static_cull)
     static = _ordered(scene.static, order)
     none = np.full(len(scene.skinned.faces), -1, np.int32)
     moving_order, moving_clusters = _clusters(scene.skinned, scene.skinned_object, none, moving_cull)
@@ -186,10 +188,10 @@ def prepare(scene: RenderScene, style: Style) -> Prepared:
     flags = np.concatenate([_flat(static) * FLAT, _flat(skinned) * FLAT + MOVES]).astype(np.int32)
     flags += np.concatenate([static_cull[order], moving_cull[moving_order]]) * np.int32(CLOSED)
     materials = np.concatenate([static.materials, skinned.materials])
-    wall = np.concatenate([scene.static_wall[order], none])
+    wall = np.concatenate([static_wall[order], none])
     quiet = np.where(clear[:, None], to_linear(static.colors), quieted(to_linear(static.colors), style.quiet))
     color = np.concatenate([quiet, to_linear(skinned.colors)])
-    set_casters = key_casters(static, scene.static_wall[order], scene.static_object[order])
+    set_casters = key_casters(static, static_wall[order], scene.static_object[order])
     return Prepared(
         vertices=static.vertices,
         normals=static.normals,

@@ -16,6 +16,10 @@ from ..mesh import Mesh
 from ..world import Light
 
 
+#: In ``static_wall``: a face seen from its front only, such as a ceiling.
+ONE_SIDED = -2
+
+
 @dataclass(frozen=True)
 class Style:
     """Frozen look of the pictures; kernels are compiled per style.
@@ -36,7 +40,8 @@ class Style:
 class RenderScene:
     """Everything drawable of one scene; loaded once.
 
-    static: world coordinates, never moves; static_object: int32 [F]; static_wall: int32 [F] or -1
+    static: world coordinates, never moves; static_object: int32 [F]; static_wall: int32 [F],
+        the wild wall of a face, -1 for none, or :data:`ONE_SIDED`
     skinned: bind-pose mesh of everything that moves; skinned_object: int32 [F], object ids that
         continue after the static ones; joints: int32 [V, 4] palette indices; weights: float32 [V, 4]
     wall_count: number of wild walls

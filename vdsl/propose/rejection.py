@@ -20,7 +20,7 @@ REASONS = (
     "in_wall",
     "in_object",
     "in_person",
-    "above_ceiling",
+    "through_ceiling",
     "too_far_outside",
     "subject_out_of_frame",
     "subject_hidden",
@@ -48,6 +48,7 @@ _NEAR_OBJECT = 0.3
 _NEAR_PERSON = 0.12  # to a pillar 0.22 m thick
 _NEAR_FACE = 0.22
 _OUTSIDE = 3.0
+_ABOVE = 1.6  # metres over a ceiling
 _FASTEST, _TURNS = 5.0, 130.0  # metres and degrees a second
 
 
@@ -64,11 +65,17 @@ def no_room(
             "below_floor": camera[..., 2].min(axis=1) < FLOOR_CLEARANCE - 1e-6,
             "in_wall": room.wall < _IN_WALL,
             "in_object": room.object < _NEAR_OBJECT * _arm(shooting),
-            "above_ceiling": camera[..., 2].max(axis=1) > ceiling - 0.1,
+            "through_ceiling": _through(camera[..., 2], ceiling),
             "too_far_outside": stage.outside(camera) > _OUTSIDE,
         },
         len(camera),
     )
+
+
+def _through(height: NDArray[np.float64], ceiling: float) -> NDArray[np.bool_]:
+    """[P]: the camera is in the ceiling, passes it, or is far above it. Seen from above it is not drawn."""
+    low, high = height.min(axis=1), height.max(axis=1)
+    return np.asarray((high > ceiling - 0.1) & ((low < ceiling + 0.05) | (high > ceiling + _ABOVE)))
 
 
 def _arm(shooting: Shooting) -> float:

@@ -20,7 +20,8 @@ from runtime.motion.types import (
     Track,
     Variant,
 )
-from vdsl.lang.definitions.action import POSED, ActionDef, Key, Move, Part
+from vdsl.lang.definitions.action import ActionDef
+from vdsl.lang.definitions.timeline import POSED, Key, Move, Part
 
 GRASPS = ("take", "put", "pass")
 

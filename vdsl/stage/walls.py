@@ -228,6 +228,14 @@ def floor_mesh(room: Room, part: int) -> Mesh:
     return painted(vertices, faces, normals, room.floor_color, room.floor, part)
 
 
+def ceiling_mesh(room: Room, part: int) -> Mesh:
+    """A room's ceiling, facing down, a little lighter than its walls."""
+    floor = floor_mesh(room, part)
+    vertices = floor.vertices + np.array([0, 0, room.size[2]], np.float32)
+    color = tuple(c + (1.0 - c) * 0.4 for c in room.wall_color)
+    return painted(vertices, floor.faces[:, ::-1], -floor.normals, color, "plaster", part)
+
+
 def _quad(
     axis: int,
     corners: list[tuple[float, float, float]],

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from runtime.mesh import MATERIALS, Mesh, join
 from runtime.shapes import painted
+from runtime.raster.types import ONE_SIDED
 from runtime.world import Solids, Spot, Wall, World, WorldObject
 
 from ..lang.definitions.prop import PropSpot
@@ -37,6 +38,7 @@ from .walls import (
     Stretch,
     cut_of,
     find_stretch,
+    ceiling_mesh,
     floor_mesh,
     skirting,
     stretches,
@@ -183,6 +185,8 @@ class _Builder:
         low, high = (x + inset, y + inset, 0.0), (x + w - inset, y + d - inset, max(h, 2.6))
         self.objects.append(WorldObject(owner, (room.name,), room.kind, spots, low, high, matrix))
         self._add(floor_mesh(room, self._parts()), owner, -1)
+        if room.kind == "room":
+            self._add(ceiling_mesh(room, self._parts()), owner, ONE_SIDED)
         self.floors.append((low[0], low[1], high[0], high[1]))
         return owner
 

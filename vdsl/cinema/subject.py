@@ -105,8 +105,8 @@ def thing(name: str, low: NDArray[np.float64], high: NDArray[np.float64], facing
 def place(name: str, low: tuple[float, ...], high: tuple[float, ...], frames: int) -> Subject:
     """A room or area as a whole, by its bounds on the floor plan."""
     span = float(np.hypot(high[0] - low[0], high[1] - low[1]))
-    tall = float(np.clip(0.42 * span, 1.8, 5.0))
-    centre = np.tile(((low[0] + high[0]) / 2, (low[1] + high[1]) / 2, low[2] + 1.05), (frames, 1))
+    tall = float(np.clip(0.36 * span, 1.8, 5.0))
+    centre = np.tile(((low[0] + high[0]) / 2, (low[1] + high[1]) / 2, low[2] + 0.9), (frames, 1))
     return _box(name, "place", centre, np.full(frames, tall), np.zeros(frames))
 
 

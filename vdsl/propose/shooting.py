@@ -156,7 +156,7 @@ def _shoot_one(
         key[:] = on
     at = np.where(key == 1, last, 0)
     mu = _mu(movement, sample.mu[i])
-    focal = _lens(shot, movement, scale, rig, sample.lens[i], mu)
+    focal = _lens(shot, movement, scale, rig, sample.lens[i] ** (1.5 if subject.kind == "place" else 1.0), mu)
     relative: Array = np.asarray(sample.azimuth[i] * (2 * np.pi / AZIMUTHS), float)
     if rig == "cinema":
         relative = relative + (2 * sample.jitter[i] - 1) * _JITTER

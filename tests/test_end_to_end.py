@@ -130,7 +130,7 @@ def test_five_mistakes_are_all_told_and_nothing_is_written(tmp_path):
     assert done.exit_code == 1
     found = json.loads(done.stdout)["diagnostics"]
     places = {(d["line"], d["suggestion"]) for d in found if d["severity"] == "error"}
-    assert {(2, "woman"), (4, "kitchen"), (6, "walk"), (7, "follow")} <= places
+    assert {(2, "woman"), (4, "apartment.kitchen"), (6, "walk"), (7, "follow")} <= places
     assert any(line == 8 for line, _ in places)
     assert not (tmp_path / "out").exists()
     assert [p.name for p in tmp_path.iterdir()] == ["five.vds"]
@@ -141,11 +141,12 @@ def test_a_target_that_cannot_be_reached_is_an_error_at_its_place(tmp_path):
         'storyboard "Cage"\n'
         "set cage {\n"
         "    area yard, at (0, 0)m, size (8, 8)m, floor grass {\n"
-        "        place ball = ball, at (6, 6)m\n"
-        "        place a = bookshelf, at (6, 5)m\n        place b = bookshelf, at (6, 7)m, turn 180deg\n"
-        "        place c = bookshelf, at (5, 6)m, turn -90deg\n        place d = bookshelf, at (7, 6)m, turn 90deg\n"
+        "        place toy = ball, at (6, 6)m\n"
+        "        place a = bookshelf(width 2.4m), at (6, 5)m\n        place b = bookshelf(width 2.4m), at (6, 7)m\n"
+        "        place c = bookshelf(width 2.4m), at (5, 6)m, turn 90deg\n"
+        "        place d = bookshelf(width 2.4m), at (7, 6)m, turn 90deg\n"
         "    }\n}\n"
-        "character anna = woman\nscene here = cage\n(anna pick up ball) / (static full eye-level)\n"
+        "character anna = woman\nscene here = cage\n(anna pick up toy) / (static full eye-level)\n"
     )
     done = run("compile", tmp_path / "cage.vds", "-o", tmp_path / "out", "--rank", "geometry", "--format", "json")
     assert done.exit_code == 1, done.output

@@ -621,6 +621,17 @@ CODES: dict[str, Code] = {
         "no room to stand here",
         "To be placed at something there must be free floor beside it: a circle of half a metre.",
     ),
+    # -- filming it (VDS190-199) -------------------------------------------------------------
+    "VDS190": Code(
+        "no camera could film this",
+        "Every proposed camera stood in a wall or a thing, did not see its subject, or did not keep to the words of "
+        "its line. The message counts why. The shot is left out of the build.",
+    ),
+    "VDS191": Code(
+        "nothing to film",
+        "A file that only defines sets, props, cast or actions can be checked, but there is no story in it to make "
+        "a film of.",
+    ),
 }
 
 

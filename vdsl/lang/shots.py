@@ -52,7 +52,7 @@ def read_shots(
     for camera in cameras:
         said = read_camera(camera, report)
         own = read_options(camera.options, defaults.fps, report) if camera else ShotOptions()
-        said = _fitting(camera, said, not context.beats, context.subject, report)
+        said = _fitting(camera, said, not node.beats, context.subject, report)
         base = _line_words(context)
         if len(cameras) > 1:
             base = [*base, *_camera_words(said)]

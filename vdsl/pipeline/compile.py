@@ -22,7 +22,7 @@ from ..emit.folder import staged_build
 from ..emit.report_json import write_report
 from ..emit.types import CUT, Build, BuiltShot, BuiltTake, RunReport, Stage, Subject, TakeMedia
 from ..emit.video import write_take
-from ..lang import Report
+from ..lang import Report, Source, Span
 from ..lang.ir import Shot, Storyboard, StoryLine
 from ..propose.cameras import Filming
 from ..propose.state import SceneState, opening_state
@@ -79,7 +79,7 @@ def compile_file(
     path = Path(path)
     folder = Path(out) if out is not None else Path("build") / path.stem
     with clock.spent("check", 1, quiet=True):
-        checked = load_storyboard(path, options.settings)
+        checked = _with_something_to_film(load_storyboard(path, options.settings))
     with staged_build(folder) as staging:
         with clock.spent("stage", len(checked.storyboard.scenes), quiet=True):
             acts = stage_acts(checked)
@@ -92,6 +92,19 @@ def compile_file(
         report = _report(perf_counter() - started, clock, options)
         write_report(staging / "report.json", report)
     return Result(folder, build, checked.report, report)
+
+
+def _with_something_to_film(checked: Checked) -> Checked:
+    """The storyboard, or ScriptError where there is no line in it."""
+    if not checked.storyboard.lines:
+        checked.report.error(
+            "VDS191",
+            Span(Source(checked.storyboard.source_name, ""), 0, 0),
+            label="this file tells no story",
+            help="add a scene and a line such as `(anna wave)`",
+        )
+        raise ScriptError(checked.report)
+    return checked
 
 
 def stage_acts(checked: Checked, hand: Stagehand | None = None) -> list[Act]:

@@ -2,8 +2,9 @@
 
 Assumes uint8 RGB pictures of one even size. Guarantees: yuv420p with its colour space tagged
 (BT.601, limited range), an exact rational frame rate, the index in front of the pictures (faststart)
-so that a browser can start at once, byte-identical output for identical frames, memory that does
-not grow with length, and a file that is either complete or not there.
+so that a browser can start at once, memory that does not grow with length, and a file that is either
+complete or not there. Identical frames mostly give identical bytes, but that is not promised: on a
+busy machine x264 was seen to code the same pictures another way about once in 500 runs.
 """
 
 from __future__ import annotations
@@ -22,7 +23,7 @@ import numpy as np
 from av.error import FFmpegError
 from numpy.typing import NDArray
 
-#: Thread count of the encoder: fixed, as the encoded bytes depend on it; four keep two cores busy.
+#: Thread count of the encoder; four keep two cores busy.
 ENCODER_THREADS = 4
 #: How many frames x264 holds back to put B-frames in order.
 _REORDER_FRAMES = 2

@@ -43,6 +43,7 @@ class Renderer:
         self._light = light
         self._shading = shading.shading_kernels(self.style)
         self._finish = finish.finish_kernels(self.style)
+        self._block = finish.BLOCK
         table = np.round(to_encoded(np.arange(4096) / 4095.0) * 255.0).astype(np.uint32)
         self._film = self.backend.upload(film_table())
         self._table = self.backend.upload(table)
@@ -310,6 +311,8 @@ class Renderer:
             width,
             height,
         )
+        final = color.reshape(-1)
+        busy = self._buffer("busy", (views * height * -(-width // self._block),), np.int32)
         if self.style.outline:
             inked = self._buffer("inked", (pixels,), np.uint32)
             self._finish.ink_rows(
@@ -322,12 +325,14 @@ class Renderer:
                 self._linear,
                 self._table,
                 inked,
+                busy,
+                final,
                 views,
                 width,
                 height,
             )
             picture = inked
-        self._finish.smooth_rows(picture, self._linear, self._table, color.reshape(-1), views, width, height)
+        self._finish.smooth_rows(picture, busy, self._linear, self._table, final, views, width, height)
         if objects is not None:
             self._finish.object_ids(edge, a["surface_object"], objects.reshape(-1), pixels)
 

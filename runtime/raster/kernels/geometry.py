@@ -92,6 +92,13 @@ def bound(
 
 
 @ti.func
+def bounded(x, least, most):
+    """``x`` kept between two bounds; two instructions, where ti.min and ti.max also mind NaN."""
+    y = ti.select(x < least, least, x)
+    return ti.select(y > most, most, y)
+
+
+@ti.func
 def to_pixel(v):
     """First pixel whose centre is not before ``v``."""
     return ti.ceil(v - 0.5)
@@ -140,7 +147,7 @@ def fill(vis: ti.template(), exact: ti.template(), base, width, y_from, y_to, y_
                 row = a.z + (centre - a.y) * slope_y + (0.5 - a.x) * slope_x
                 start = base + y * width
                 for x in range(x0, x1):
-                    w = ti.min(ti.max(row + ti.cast(x, ti.f32) * slope_x, least), most)
+                    w = bounded(row + ti.cast(x, ti.f32) * slope_x, least, most)
                     key = (ti.cast(ti.bit_cast(w, ti.u32), ti.u64) << 32) | low
                     if ti.static(exact):
                         if key > vis[start + x]:

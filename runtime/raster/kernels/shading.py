@@ -14,12 +14,11 @@ import taichi as ti
 
 from ..film import FILM_RANGE, FILM_SIZE
 from ..types import Style
-from .geometry import f1, f2, f3, i1, i2, item3, part3, row3, u8s, u32s, u64s, vec3
+from .geometry import bounded, f1, f2, f3, i1, i2, item3, part3, row3, u8s, u32s, u64s, vec3
 from .light import BLOCK, lit, offset_point, unblocked
 from .pattern import broad_pattern, glazed, pattern
 
 NOTHING = 0xFFFF0000
-STRETCH = 8  # pixels
 
 
 @ti.func
@@ -64,15 +63,15 @@ def developed(light, film: ti.template()):
     """Scene light to packed 8-bit sRGB and luma, through the film's table."""
     limit = ti.static(FILM_RANGE)
     scale = ti.static((FILM_SIZE - 1) / FILM_RANGE)
-    r8 = ti.cast(film[ti.cast(ti.min(ti.max(light.x, 0.0), limit) * scale + 0.5, ti.i32)], ti.u32)
-    g8 = ti.cast(film[ti.cast(ti.min(ti.max(light.y, 0.0), limit) * scale + 0.5, ti.i32)], ti.u32)
-    b8 = ti.cast(film[ti.cast(ti.min(ti.max(light.z, 0.0), limit) * scale + 0.5, ti.i32)], ti.u32)
+    r8 = ti.cast(film[ti.cast(bounded(light.x, 0.0, limit) * scale + 0.5, ti.i32)], ti.u32)
+    g8 = ti.cast(film[ti.cast(bounded(light.y, 0.0, limit) * scale + 0.5, ti.i32)], ti.u32)
+    b8 = ti.cast(film[ti.cast(bounded(light.z, 0.0, limit) * scale + 0.5, ti.i32)], ti.u32)
     return r8 | (g8 << 8) | (b8 << 16) | (((r8 * 5 + g8 * 9 + b8 * 2) >> 4) << 24)
 
 
 @ti.func
 def soft_step(x, at, width):
-    t = ti.min(ti.max((x - at) / width + 0.5, 0.0), 1.0)
+    t = bounded((x - at) / width + 0.5, 0.0, 1.0)
     return t * t * (3.0 - 2.0 * t)
 
 
@@ -213,6 +212,7 @@ def shading_kernels(style: Style) -> SimpleNamespace:
             free, free_end = False, False
             end_at = vec3(0)
             joined = False
+            stretch = 16 if height > 400 else 8
             x = 0
             while x < width:
                 at = line * width + x
@@ -278,7 +278,7 @@ def shading_kernels(style: Style) -> SimpleNamespace:
                     if not moves and material != 7 and material != 8:
                         # a stretch of one triangle: look its two ends up, the rest lies between
                         end = x
-                        last_x = ti.min(width - 1, x + STRETCH)
+                        last_x = ti.min(width - 1, x + stretch)
                         while end < last_x and ti.cast(vis[at + end - x + 1], ti.u32) == ti.cast(key, ti.u32):
                             end += 1
                         begin_at = vec3(0)
@@ -314,7 +314,7 @@ def shading_kernels(style: Style) -> SimpleNamespace:
                                     free_end = unblocked(q, m, frame, size, coarse) and unblocked(
                                         q_set, 0, set_frame, set_size, set_coarse
                                     )
-                                haze_end = ti.min(ti.max((depth - 2.0) * 0.0144, 0.0), 0.36)
+                                haze_end = bounded((depth - 2.0) * 0.0144, 0.0, 0.36)
                                 if k == 0:
                                     begin_at = end_at
                                     shade, tone, free = shade_end, tone_end, free_end
@@ -357,8 +357,8 @@ def shading_kernels(style: Style) -> SimpleNamespace:
                             nn = n0
                             if not flat:
                                 d = where - p0
-                                b1 = ti.min(ti.max(d.dot(g1), 0.0), 1.0)
-                                b2 = ti.min(ti.max(d.dot(g2), 0.0), 1.0)
+                                b1 = bounded(d.dot(g1), 0.0, 1.0)
+                                b2 = bounded(d.dot(g2), 0.0, 1.0)
                                 nn = n0 + n1 * b1 + n2 * b2
                                 nn *= 1.0 / ti.sqrt(ti.max(nn.norm_sqr(), 1e-12))
                                 mark = (mark & ti.u32(0xFFFF0000)) | pack_normal(nn)
@@ -388,7 +388,7 @@ def shading_kernels(style: Style) -> SimpleNamespace:
                                     out = albedo * (ambient * shade + sun_color * key_light)
                                     shade += step_shade
                                     tone += step_tone
-                            far = ti.min(ti.max((depth - 2.0) * 0.04, 0.0), 1.0)
+                            far = bounded((depth - 2.0) * 0.04, 0.0, 1.0)
                             far *= 0.15 if moves else 0.36
                             out += (horizon - out) * far
                             picture[i] = developed(out, film)

@@ -136,7 +136,7 @@ def _fetch(
 def _go(plan: Plan, task: Task, stride: tuple[float, float], rng: np.random.Generator) -> None:
     clip, route = task.clip, plan.route
     path = task.path if clip.travel != "none" else None
-    if path is not None and len(path) and _path_length(path) < 0.05:
+    if path is not None and (len(path) == 0 or _path_length(path) < 0.05):
         path = None
     heading = task.arrive_heading
     if path is not None:

@@ -255,7 +255,8 @@ class Scene:
         pairs = [
             (h[-1].hand, k) for k, h in self.holds.items() if h and h[-1].person == name and h[-1].end > 1e8
         ]
-        return tuple(sorted(pairs))
+        unknown = [x for x in self.plans[name].actor.state.held if x[1] not in self.rest]
+        return tuple(sorted([*pairs, *unknown]))
 
     def end_props(self) -> dict[int, PropState]:
         out = {}
@@ -276,7 +277,8 @@ def _holds(plans: dict[str, Plan], props: dict[int, PropState]) -> dict[int, lis
             if thing in props:
                 holds.setdefault(thing, []).append(Hold(name, hand, -1e9, 1e9, None))
     for event in sorted((e for p in plans.values() for e in p.events), key=lambda e: e.time):
-        if event.object not in props:
+        nobody = event.kind == "pass" and event.receiver not in plans
+        if event.object not in props or nobody:
             continue
         mine = holds.setdefault(event.object, [])
         if mine:

@@ -183,3 +183,16 @@ def test_eyes_lead_the_head() -> None:
     assert eye_yaw[-8] == pytest.approx(wanted, abs=0.25)
     assert int(np.argmax(eye_yaw > 0.5 * wanted)) <= int(np.argmax(head_yaw > 0.5 * head_yaw[-8]))
     assert np.abs(head_yaw).max() < 1.8
+
+
+def test_odd_requests_are_survived() -> None:
+    nowhere = Task(clips()["walk"], path=np.zeros((0, 2)))
+    on_the_spot = Task(clips()["walk"], path=np.array([[0.0, 0], [0.1, 0], [-0.2, 0]]), duration=0.3)
+    to_nobody = Task(clips()["give"], target=at(0.4, 0, 0.8, object=CUP), second=at(9, 9, 1, character="z"))
+    for task in (nowhere, on_the_spot, to_nobody):
+        motion = perform({"a": person()}, {"a": task}, {CUP: thing(0.4, 0, 0.75)}, 24000 / 1001, -5)
+        assert motion.frames >= 2
+        assert np.isfinite(motion.world_from_joint["a"]).all()
+        assert np.isfinite(motion.props[CUP]).all()
+    kept = perform({"a": person(held=(("r", 99),))}, {"a": Task(clips()["drink"])}, {}, FPS, 0)
+    assert kept.end_actors["a"].held == (("r", 99),)

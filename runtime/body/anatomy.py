@@ -106,7 +106,7 @@ def bust(f: Figure, grow: float = 0.0) -> list[tuple[Field, float]]:
     """Chest forms in front of the trunk's loft."""
     h, z = f.p.height, f.level(0.70)
     x = h * f.mix(0.047, 0.041)
-    if f.fem > 0.3:
+    if f.fem > 0.6:
         r = h * (0.024 + 0.009 * f.fem + 0.016 * max(f.heavy, 0.0))
         c = (x - 0.1 * r, 0.041 * h, z)
         return [(ellipsoid(c, (r + grow, 1.06 * r + grow, 1.02 * r + grow)), 0.035 * h)]

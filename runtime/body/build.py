@@ -29,7 +29,7 @@ from .surface import Patch
 from .weights import body_weights, face_weights, rigid, strongest
 
 #: Raised with every change of shape, so that old cache files are not read.
-VERSION = 2
+VERSION = 4
 
 
 @dataclass(frozen=True, eq=False)

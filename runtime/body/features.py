@@ -35,7 +35,7 @@ def limb_pieces(f: Figure) -> list[Piece]:
     patch = polygonise(local, (start, -0.065 * h, -0.06 * h), (reach, 0.065 * h, 0.06 * h), 0.0033 * h / 1.7)
     wrist = f.p.upper_arm + f.p.forearm
     focus = Focus((wrist + 0.55 * f.p.hand, 0.0, 0.0), 0.6 * f.p.hand, 2.2)
-    patch = simplify(patch, 600 if long_sleeves else 850, local, focus)
+    patch = simplify(patch, 520 if long_sleeves else 800, local, focus)
     patch = Patch(
         patch.vertices @ ARM_FRAME + origin,
         patch.faces[:, ::-1] if np.linalg.det(ARM_FRAME) < 0 else patch.faces,
@@ -50,15 +50,20 @@ def _skin(head: Head) -> list[Piece]:
     patch = polygonise(solid, low, high, 0.0150 * u)
     centre = o + np.array([0.30, 0.10, 0.34]) * u
     focus = Focus((float(centre[0]), float(centre[1]), float(centre[2])), 0.24 * u, 3.6)
-    patch = half(simplify(patch, 2150, solid, focus))
+    patch = half(simplify(patch, 1850, solid, focus))
     cover = hair_cover(head)
     if cover is not None:
         patch = cull(patch, cover, 0.012 * u)
     line = o[2] - 0.72 * u
-    side = 0.058 * f.p.height
-    patch = clip(
-        patch, lambda p: np.maximum(line - p[:, 2], np.where(p[:, 2] < o[2] - 0.1 * u, p[:, 1] - side, -1.0))
-    )
+    side, nape, back = 0.058 * f.p.height, f.level(1.04), f.joint("neck")[0] - 0.012 * f.p.height
+
+    def shown(p: Points) -> Values:
+        """Less than clothes may leave bare is hidden anyway."""
+        wide = np.where(p[:, 2] < o[2] - 0.1 * u, p[:, 1] - side, -1.0)
+        behind = np.where(p[:, 0] < back, nape - p[:, 2], -1.0)
+        return np.maximum(np.maximum(line - p[:, 2], wide), behind)
+
+    patch = clip(patch, shown)
     opening = head.field(eye_opening(head))
     lash = head.field(_lash_outline(head))
     piece = Piece(clip(patch, opening, keep_outside=True), f.spec.skin, "skin", solid, rule="face")

@@ -202,7 +202,7 @@ def _tied(head: Head) -> Piece:
         q[:, 1] = np.where(p[:, 0] > 0.14, p[:, 1], np.abs(p[:, 1]))
         return cut(q)
 
-    return _piece(head, shape, (-0.64, -0.5, 0.0), (0.6, 0.5, 1.2), sided, 900, symmetric=False)
+    return _piece(head, shape, (-0.64, -0.5, 0.0), (0.6, 0.5, 1.2), sided, 750, symmetric=False)
 
 
 def _ponytail(head: Head) -> list[Piece]:

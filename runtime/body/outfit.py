@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from .anatomy import ARM_FRAME, TORSO_FRAME, Figure, arm_loft, leg_loft, limb, trunk
-from .field import Field, Knot, Points, Values, loft, smooth_min, union
+from .field import Field, Knot, Points, Values, ellipsoid, loft, smooth_min, union
 from .pieces import Piece, hemmed, parted, parted_all, shade
 from .spec import Colour
 from .surface import Patch, clip, half, polygonise, simplify
@@ -61,11 +61,12 @@ def neckline(f: Figure, depth: float, air: float = 0.0, lift: float = 0.0, sharp
     h = f.p.height
     x, z = f.joint("neck")[0], f.level(1.085) + lift
     radius = h * f.mix(0.0395, 0.0325) * (1.0 + 0.35 * f.heavy) + air
+    back = (0.010 if lift <= 0.0 else 0.003) * h
 
     def field(p: Points) -> Values:
         front = np.clip((p[:, 0] - x + 0.012 * h) / (0.040 * h), 0.0, 1.0)
-        reach = 0.010 * h + (depth - 0.010 * h) * front * front * (3 - 2 * front)
-        open_up = radius + 0.35 * np.clip(p[:, 2] - z, 0.0, 0.03 * h)
+        reach = back + (depth - back) * front * front * (3 - 2 * front)
+        open_up = radius + (0.75 if air > 0 else 0.35) * np.clip(p[:, 2] - z, 0.0, 0.03 * h)
         across = np.hypot(p[:, 1], np.clip(x - p[:, 0], 0.0, 1.0) * 0.7) / open_up
         down = np.clip(z + 0.012 * h * (1 - front) - p[:, 2], 0.0, None) / reach
         return (1.0 - (across**sharp + down**sharp) ** (1.0 / sharp)) * radius
@@ -85,7 +86,7 @@ def top_solid(f: Figure, grow: float, ease: float, sleeves: Field) -> Field:
     """Trunk and left sleeve of a garment."""
     h, grow = f.p.height, max(grow, 0.010)
     body, leg = trunk(f, grow, ease), leg_loft(f, grow)
-    low, high = f.level(0.98), f.level(1.12)
+    low, high = f.level(0.90), f.level(1.05)
 
     def field(p: Points) -> Values:
         hug = np.clip((p[:, 2] - low) / (high - low), 0.0, 1.0) * (
@@ -223,10 +224,14 @@ def _blazer(f: Figure, hem_level: float = -0.22, skirt: float = 0.0) -> list[Pie
     grow, ease = 0.0150 * h, 0.16
     end = (f.p.upper_arm + f.p.forearm) * 0.96
     solid = top_solid(f, grow, ease, sleeve(f, 0.0098 * h, end))
+    nape = f.joint("neck") + np.array([-0.013 * h, 0.0, f.level(1.06) - f.joint("neck")[2]])
+    roll = ellipsoid(nape, (0.038 * h, 0.035 * h, 0.034 * h))
+    cloth_solid = solid
+    solid = lambda p: smooth_min(cloth_solid(p), roll(p), 0.02 * h)  # noqa: E731
     if skirt > 0:
         body, tail = solid, skirt_tail(f, hem)
         solid = lambda p: smooth_min(body(p), tail(p), 0.05 * h)  # noqa: E731
-    patch = surface_of(f, solid, hem - 0.04 * h, f.level(1.35), True, 950)
+    patch = surface_of(f, solid, hem - 0.04 * h, f.level(1.35), True, 850)
     patch = clip(
         patch, both(both(above(hem, 0.05), along_arm(f, end)), neckline(f, 0.030 * h, -0.003 * h, 0.012 * h))
     )

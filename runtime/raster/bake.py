@@ -54,7 +54,7 @@ def key_casters(mesh: Mesh, wall: NDArray[np.int32], object_ids: NDArray[np.int3
         flat_area = np.abs(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])[:, 2]) / 2
         area = np.bincount(index, weights=flat_area)
         ceiling = (low > CEILING) & (flat_area > BROAD / 2)
-        keep &= (wall < 0) & ~ceiling & ~((object_low > CEILING) & (area > BROAD))[index]
+        keep &= (wall == -1) & ~ceiling & ~((object_low > CEILING) & (area > BROAD))[index]
     return np.flatnonzero(keep).astype(np.int32)
 
 

@@ -70,6 +70,7 @@ def start(device: str = "auto") -> Backend:
             )
         return backend
     os.environ.setdefault("ENABLE_TAICHI_HEADER_PRINT", "0")
+    os.environ.setdefault("TI_LOG_LEVEL", "error")
     import taichi as ti
 
     threads = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
@@ -78,15 +79,18 @@ def start(device: str = "auto") -> Backend:
         arch = getattr(ti, name)
         if name != "cpu" and not ti._lib.core.with_cuda() and name == "cuda":
             continue
-        with contextlib.redirect_stdout(io.StringIO()):  # it prints a banner
-            ti.init(
-                arch=arch,
-                offline_cache=True,
-                cpu_max_num_threads=threads,
-                fast_math=False,  # shared edges must come out the same in every triangle
-                log_level=ti.ERROR,
-                enable_fallback=False,
-            )
+        try:
+            with contextlib.redirect_stdout(io.StringIO()):  # it prints a banner
+                ti.init(
+                    arch=arch,
+                    offline_cache=True,
+                    cpu_max_num_threads=threads,
+                    fast_math=False,  # shared edges must come out the same in every triangle
+                    log_level=ti.ERROR,
+                    enable_fallback=False,
+                )
+        except Exception as error:  # Taichi raises what it likes when a driver is missing
+            raise DeviceError(f"no usable {name} device here ({error}); try --device cpu") from error
         if ti.lang.impl.current_cfg().arch == arch or name == "cpu":
             _started.append(Backend(name, threads))
             return _started[0]

@@ -15,7 +15,6 @@ from numpy.typing import NDArray
 from ..mesh import Mesh
 from ..world import Light
 
-
 #: In ``static_wall``: a face seen from its front only, such as a ceiling.
 ONE_SIDED = -2
 
@@ -34,6 +33,14 @@ class Style:
     quiet: float = 0.45
     shadows: bool = True
     occlusion: bool = True
+
+
+#: The looks a storyboard can ask for by name.
+STYLES = {
+    "board": Style(),
+    "clay": Style("clay", outline=False, tones=0, quiet=0.3),
+    "ink": Style("ink", tones=2, quiet=0.95),
+}
 
 
 @dataclass(frozen=True, eq=False)

@@ -12,6 +12,7 @@ import pytest
 from raster_scenes import LIGHT, box, from_lists, looking, room, scene, sphere, still
 from twin import trace
 
+from runtime.raster.device import DeviceError
 from runtime.raster.prepare import closed_faces
 from runtime.raster.renderer import Renderer
 from runtime.raster.types import RenderScene, Style, Views
@@ -295,3 +296,11 @@ def test_both_ways_of_filling_agree() -> None:
         r.serial = True
     np.testing.assert_array_equal(alone.ids, shared.ids)
     np.testing.assert_array_equal(alone.color, shared.color)
+
+
+def test_devices_that_cannot_be_used_are_named() -> None:
+    renderer(PLAIN)
+    with pytest.raises(DeviceError, match="abacus"):
+        Renderer("abacus")
+    with pytest.raises(DeviceError, match="renders on cpu"):
+        Renderer("cuda")

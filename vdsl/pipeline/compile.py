@@ -157,7 +157,8 @@ def _film_all(
     clock.begin("propose", sum(s.proposals for s in shots), _UNITS["propose"])
     start = 0
     for act in acts:
-        for number, shot in enumerate(act.line.shots):
+        joined = False  # the first shot of the line that has a take joins it to the last line
+        for shot in act.line.shots:
             with clock.spent("propose", shot.proposals):
                 grid = propose(act.line, shot, act.state, act.filming)
             scores = _scores(grid, act, shot, judge, camerawork, clock)
@@ -165,7 +166,8 @@ def _film_all(
                 _film(rank, i, scores, grid, act, shot, camerawork, (storyboard, options, folder, start), clock)
                 for rank, i in enumerate(choose_takes(grid.cameras, scores, shot.takes), start=1)
             )
-            built = _built(grid, act.line, shot, storyboard, takes, first=number == 0)
+            built = _built(grid, act.line, shot, storyboard, takes, first=not joined)
+            joined = joined or bool(takes)
             start += built.frames
             yield built
 

@@ -60,7 +60,9 @@ class Mesh:
         for name, (shape, dtype) in expected.items():
             array = getattr(self, name)
             if array.shape != shape or array.dtype != dtype:
-                raise ValueError(f"Mesh.{name}: expected {np.dtype(dtype)} {shape}, got {array.dtype} {array.shape}")
+                raise ValueError(
+                    f"Mesh.{name}: expected {np.dtype(dtype)} {shape}, got {array.dtype} {array.shape}"
+                )
         if f and (self.faces.min() < 0 or self.faces.max() >= v):
             raise ValueError("Mesh.faces: an index is outside the vertices")
         if not np.isfinite(self.vertices).all():
@@ -91,7 +93,9 @@ def join(meshes: list[Mesh]) -> Mesh:
     offsets = np.cumsum([0] + [len(m.vertices) for m in meshes[:-1]])
     return Mesh(
         np.concatenate([m.vertices for m in meshes]),
-        np.concatenate([m.faces + np.int32(o) for m, o in zip(meshes, offsets, strict=True)]).astype(np.int32),
+        np.concatenate([m.faces + np.int32(o) for m, o in zip(meshes, offsets, strict=True)]).astype(
+            np.int32
+        ),
         np.concatenate([m.normals for m in meshes]),
         np.concatenate([m.colors for m in meshes]),
         np.concatenate([m.parts for m in meshes]),

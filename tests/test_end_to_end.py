@@ -80,7 +80,11 @@ def test_a_build_holds_what_the_contract_says(built):
             track = json.loads((out / take["track"]).read_text())
             size, fps, frames = video_info(out / take["video"])
             assert (size, fps, frames) == ((320, 180), (24, 1), track["frames"])
-            for values in (track["camera"]["position"], track["camera"]["focal_mm"], track["subject"]["position"]):
+            for values in (
+                track["camera"]["position"],
+                track["camera"]["focal_mm"],
+                track["subject"]["position"],
+            ):
                 assert len(values) == track["frames"]
         scores = [t["score"] for t in shot["takes"]]
         assert scores == sorted(scores, reverse=True)
@@ -142,13 +146,16 @@ def test_a_target_that_cannot_be_reached_is_an_error_at_its_place(tmp_path):
         "set cage {\n"
         "    area yard, at (0, 0)m, size (8, 8)m, floor grass {\n"
         "        place toy = ball, at (6, 6)m\n"
-        "        place a = bookshelf(width 2.4m), at (6, 5)m\n        place b = bookshelf(width 2.4m), at (6, 7)m\n"
+        "        place a = bookshelf(width 2.4m), at (6, 5)m\n"
+        "        place b = bookshelf(width 2.4m), at (6, 7)m\n"
         "        place c = bookshelf(width 2.4m), at (5, 6)m, turn 90deg\n"
         "        place d = bookshelf(width 2.4m), at (7, 6)m, turn 90deg\n"
         "    }\n}\n"
         "character anna = woman\nscene here = cage\n(anna pick up toy) / (static full eye-level)\n"
     )
-    done = run("compile", tmp_path / "cage.vds", "-o", tmp_path / "out", "--rank", "geometry", "--format", "json")
+    done = run(
+        "compile", tmp_path / "cage.vds", "-o", tmp_path / "out", "--rank", "geometry", "--format", "json"
+    )
     assert done.exit_code == 1, done.output
     assert [d["line"] for d in json.loads(done.stdout)["diagnostics"] if d["severity"] == "error"] == [13]
     assert not (tmp_path / "out").exists()

@@ -29,7 +29,7 @@ def _imports(path: Path) -> set[tuple[str, ...]]:
             base = tuple(node.module.split(".")) if node.module else ()
             if node.level:
                 base = package[: len(package) - (node.level - 1)] + base
-            found.update(base + (alias.name,) for alias in node.names)
+            found.update((*base, alias.name) for alias in node.names)
     return found
 
 

@@ -53,5 +53,11 @@ def _print(figures: Figures) -> None:
     document = figures.document()
     for key, name, unit in _ROWS:
         value = document[key]
-        shown = "not measured" if not isinstance(value, float) else f"{value:,.0f}" if value >= 100 else f"{value:.2f}"
+        shown = (
+            "not measured"
+            if not isinstance(value, float)
+            else f"{value:,.0f}"
+            if value >= 100
+            else f"{value:.2f}"
+        )
         print(f"{name:<28}{shown:>12} {unit if isinstance(value, float) else ''}".rstrip())

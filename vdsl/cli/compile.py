@@ -43,10 +43,18 @@ def compile_command(
     proposals: Annotated[
         int | None, typer.Option(min=1, max=1000, help="Proposals a shot.", show_default="80")
     ] = None,
-    takes: Annotated[int | None, typer.Option(min=1, max=100, help="Takes kept a shot.", show_default="5")] = None,
-    seed: Annotated[int | None, typer.Option(min=0, help="Another seed, other proposals.", show_default="0")] = None,
-    size: Annotated[str | None, typer.Option(help="Picture size, as 1920x1080.", show_default="1280x720")] = None,
-    rig: Annotated[Rig | None, typer.Option(help="How camera words become positions.", show_default="cinema")] = None,
+    takes: Annotated[
+        int | None, typer.Option(min=1, max=100, help="Takes kept a shot.", show_default="5")
+    ] = None,
+    seed: Annotated[
+        int | None, typer.Option(min=0, help="Another seed, other proposals.", show_default="0")
+    ] = None,
+    size: Annotated[
+        str | None, typer.Option(help="Picture size, as 1920x1080.", show_default="1280x720")
+    ] = None,
+    rig: Annotated[
+        Rig | None, typer.Option(help="How camera words become positions.", show_default="cinema")
+    ] = None,
     rank: Annotated[Judge, typer.Option(help="Who puts the proposals in order.")] = Judge.discriminator,
     weights: Annotated[
         Path | None, typer.Option(help="Weights of the discriminator.", show_default="the shipped ones")

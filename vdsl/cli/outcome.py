@@ -24,7 +24,8 @@ def print_outcome(result: Result, format: str, file: Path) -> None:
     shots, frames = result.build.shots, sum(s.frames for s in result.build.shots)
     num, den = result.build.storyboard.fps
     takes = sum(len(s.takes) for s in shots)
-    made = f"{len(shots)} shots, {takes} takes, {frames * den / num:.1f} s of film in {result.report.seconds:.0f} s"
+    film = f"{frames * den / num:.1f} s of film in {result.report.seconds:.0f} s"
+    made = f"{len(shots)} shots, {takes} takes, {film}"
     console.print(printable(made), highlight=False)
     for name in ("index.html", "animatic.mp4", "sheet.png"):
         if (result.folder / name).exists():
@@ -37,7 +38,10 @@ def _table(result: Result) -> Table:
         table.add_column(title, justify=justify)  # type: ignore[arg-type]
     for built in result.build.shots:
         best = f"{built.takes[0].score:.2f}" if built.takes else "–"
-        table.add_row(printable(built.shot.id), camera_words(built) if built.takes else "none", str(built.proposals), best)
+        table.add_row(
+            printable(built.shot.id),
+            camera_words(built) if built.takes else "none",
+            str(built.proposals),
+            best,
+        )
     return table
-
-

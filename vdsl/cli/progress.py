@@ -17,7 +17,12 @@ class _Rate(ProgressColumn):
         speed = task.finished_speed or task.speed
         if not speed:
             return Text("")
-        return Text(f"{speed:,.0f} {task.fields['unit']}/s" if speed >= 10 else f"{speed:.1f} {task.fields['unit']}/s", style="dim")
+        return Text(
+            f"{speed:,.0f} {task.fields['unit']}/s"
+            if speed >= 10
+            else f"{speed:.1f} {task.fields['unit']}/s",
+            style="dim",
+        )
 
 
 class Bars:
@@ -39,7 +44,9 @@ class Bars:
         self._progress.start()
         return self
 
-    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None) -> None:
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
         self._progress.stop()
 
     def begin(self, stage: str, total: int, unit: str) -> None:

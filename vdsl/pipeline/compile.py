@@ -163,7 +163,9 @@ def _film_all(
                 grid = propose(act.line, shot, act.state, act.filming)
             scores = _scores(grid, act, shot, judge, camerawork, clock)
             takes = tuple(
-                _film(rank, i, scores, grid, act, shot, camerawork, (storyboard, options, folder, start), clock)
+                _film(
+                    rank, i, scores, grid, act, shot, camerawork, (storyboard, options, folder, start), clock
+                )
                 for rank, i in enumerate(choose_takes(grid.cameras, scores, shot.takes), start=1)
             )
             built = _built(grid, act.line, shot, storyboard, takes, first=not joined)
@@ -224,7 +226,12 @@ def _subject(grid: ProposalGrid, act: Act, story: StoryProposal) -> Subject | No
 
 
 def _built(
-    grid: ProposalGrid, line: StoryLine, shot: Shot, storyboard: Storyboard, takes: tuple[BuiltTake, ...], first: bool
+    grid: ProposalGrid,
+    line: StoryLine,
+    shot: Shot,
+    storyboard: Storyboard,
+    takes: tuple[BuiltTake, ...],
+    first: bool,
 ) -> BuiltShot:
     return BuiltShot(
         shot=shot,
@@ -259,7 +266,8 @@ def _warn_of_empty_shots(shots: tuple[BuiltShot, ...], report: Report) -> None:
 
 def _report(seconds: float, clock: StageClock, options: Options) -> RunReport:
     stages = tuple(
-        Stage(name, spent, clock.units.get(name, 0), _UNITS.get(name, "")) for name, spent in clock.seconds.items()
+        Stage(name, spent, clock.units.get(name, 0), _UNITS.get(name, ""))
+        for name, spent in clock.seconds.items()
     )
     return RunReport(seconds, stages, peak_mib=peak_mib(), device=options.device)
 

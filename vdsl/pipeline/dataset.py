@@ -84,7 +84,13 @@ def generate(
 
 
 def _film_story(
-    text: str, number: int, seed: int, group: str, hand: Stagehand, camerawork: Camerawork, writer: ShardWriter
+    text: str,
+    number: int,
+    seed: int,
+    group: str,
+    hand: Stagehand,
+    camerawork: Camerawork,
+    writer: ShardWriter,
 ) -> None:
     """Film one story's lines; one that cannot be played (a way blocked, say) gives nothing."""
     try:
@@ -102,15 +108,22 @@ def _film_story(
         cameras = tuple(c.camera for c in picked)
         frames = camerawork.judge_frames(act.staged, shot.style, grid.story, cameras)
         for clip, pictures in zip(picked, frames, strict=True):
-            words = (_FAMILY[clip.camera.movement], clip.camera.scale, clip.camera.angle)
-            known = words if clip.shows_type else (None, None, None)
-            writer.add(pictures, clip.strength == 0.0, *known, group=group, strength=clip.strength)
+            movement, scale, angle = (
+                (_FAMILY[clip.camera.movement], clip.camera.scale, clip.camera.angle)
+                if clip.shows_type
+                else (None, None, None)
+            )
+            writer.add(pictures, clip.strength == 0.0, movement, scale, angle, group, clip.strength)
 
 
 def _clips(grid: ProposalGrid, rng: np.random.Generator) -> list[_Clip]:
     """The designer's picks of a line, and as many spoilt ones at graded strengths."""
     scores = np.array([geometry_score(c.measures) for c in grid.cameras])
-    good = [i for i in choose_takes(grid.cameras, scores, _PICKS) if scores[i] >= _LEAST_SCORE] if len(scores) else []
+    good = (
+        [i for i in choose_takes(grid.cameras, scores, _PICKS) if scores[i] >= _LEAST_SCORE]
+        if len(scores)
+        else []
+    )
     out = [_Clip(grid.cameras[i], 0.0) for i in good]
     for i in good:
         strength = float(rng.uniform(0.1, 1.0))
@@ -120,4 +133,3 @@ def _clips(grid: ProposalGrid, rng: np.random.Generator) -> list[_Clip]:
 
 def _spoilt(camera: CameraProposal, strength: float, rng: np.random.Generator) -> CameraProposal:
     return replace(camera, track=perturbed(camera.track, strength, rng))
-

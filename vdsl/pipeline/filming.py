@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 from numpy.typing import NDArray
 
 from runtime.raster.renderer import Renderer
-from runtime.raster.types import Camera, Style, Views
+from runtime.raster.types import STYLES, Camera, Views
 
 from ..cinema.track import CameraTrack, camera_axes
 from ..propose.types import CameraProposal, StoryProposal
@@ -56,7 +56,12 @@ class Camerawork:
         return color.reshape(len(cameras), SEGMENTS, *color.shape[1:])
 
     def take_frames(
-        self, staged: StagedScene, style: str, story: StoryProposal, camera: CameraProposal, size: tuple[int, int]
+        self,
+        staged: StagedScene,
+        style: str,
+        story: StoryProposal,
+        camera: CameraProposal,
+        size: tuple[int, int],
     ) -> Iterator[NDArray[np.uint8]]:
         """Every frame of a take in order, uint8 [H, W, 3]; the next few are drawn while one is used."""
         renderer = self._renderer(staged, style)
@@ -77,7 +82,7 @@ class Camerawork:
 
     def _renderer(self, staged: StagedScene, style: str) -> Renderer:
         if style not in self._renderers:
-            self._renderers[style] = Renderer(self._device, Style(name=style))
+            self._renderers[style] = Renderer(self._device, STYLES[style])
         if self._loaded.get(style) is not staged:
             self._renderers[style].load(staged.render)
             self._loaded[style] = staged
@@ -89,7 +94,7 @@ def _palettes(staged: StagedScene, story: StoryProposal, frames: NDArray[np.inte
     return palettes(staged, joints, story.props, frames)
 
 
-def _camera(tracks: list[tuple[CameraTrack, NDArray[np.integer]]]) -> Camera:
+def _camera(tracks: Sequence[tuple[CameraTrack, NDArray[np.integer]]]) -> Camera:
     """The chosen frames of several tracks, one after the other, as a batch of cameras."""
     return Camera(
         position=np.concatenate([t.position[f] for t, f in tracks]).astype(np.float32),

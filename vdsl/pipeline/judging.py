@@ -34,7 +34,9 @@ class GeometryJudge:
     name = "geometry"
     looks = False
 
-    def scores(self, cameras: tuple[CameraProposal, ...], frames: NDArray[np.uint8] | None) -> NDArray[np.float64]:
+    def scores(
+        self, cameras: tuple[CameraProposal, ...], frames: NDArray[np.uint8] | None
+    ) -> NDArray[np.float64]:
         return np.array([geometry_score(c.measures) for c in cameras])
 
 
@@ -53,7 +55,9 @@ class DiscriminatorJudge:
 
         self._ranker = Ranker.load(weights, device="cuda" if device == "cuda" else "cpu")
 
-    def scores(self, cameras: tuple[CameraProposal, ...], frames: NDArray[np.uint8] | None) -> NDArray[np.float64]:
+    def scores(
+        self, cameras: tuple[CameraProposal, ...], frames: NDArray[np.uint8] | None
+    ) -> NDArray[np.float64]:
         if frames is None:
             raise ValueError("the discriminator judges by frames")
         # From the logit: p_b itself runs out of digits near 1.

@@ -51,12 +51,16 @@ def _alike(a: CameraProposal, b: CameraProposal) -> bool:
     )
 
 
-def _sampled(proposal: CameraProposal) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+def _sampled(
+    proposal: CameraProposal,
+) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
     track = proposal.track
     at = np.linspace(0, len(track.focal) - 1, _SAMPLES).round().astype(int)
     return track.position[at], track.look_at[at], track.focal[at]
 
 
-def _direction(sample: tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]) -> NDArray[np.float64]:
+def _direction(
+    sample: tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]],
+) -> NDArray[np.float64]:
     d = sample[1] - sample[0]
     return np.asarray(d / np.maximum(np.linalg.norm(d, axis=-1, keepdims=True), 1e-9))

@@ -26,9 +26,17 @@ class Stagehand:
         self._bodies: dict[BodySpec, Body] = {}
 
     def stage(self, scene: Scene, characters: Sequence[Character], lines: Sequence[StoryLine]) -> StagedScene:
-        """The scene with those of the cast who take part in it: placed there, or acting in one of its lines."""
-        present = {p.character for p in scene.placements} | {b.character for line in lines for b in line.beats}
-        present |= {t.path[0] for line in lines for b in line.beats for t in (b.target, b.second) if t and t.kind == "character"}
+        """The scene with those of the cast who take part in it: placed there, acting, or acted upon."""
+        present = {p.character for p in scene.placements} | {
+            b.character for line in lines for b in line.beats
+        }
+        present |= {
+            t.path[0]
+            for line in lines
+            for b in line.beats
+            for t in (b.target, b.second)
+            if t and t.kind == "character"
+        }
         return assemble(self.world(scene), {c.name: self.body(c) for c in characters if c.name in present})
 
     def world(self, scene: Scene) -> World:
@@ -42,7 +50,7 @@ class Stagehand:
     def body(self, character: Character) -> Body:
         definition = self._catalog.get("cast", character.cast)
         assert isinstance(definition, CastDef), character.cast
-        spec = body_spec(definition, character.arguments)
+        spec = body_spec(definition, dict(character.arguments))
         if spec not in self._bodies:
             self._bodies[spec] = build_body(spec)
         return self._bodies[spec]

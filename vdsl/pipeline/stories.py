@@ -33,11 +33,15 @@ class Place:
 
 def places(catalog: Catalog) -> tuple[Place, ...]:
     """Every room or area of every library set."""
-    found = []
+    found: list[Place] = []
     for name in sorted(catalog.names("set")):
         definition = catalog.get("set", name)
         if isinstance(definition, SetDef):
-            found.extend(_place(catalog, name, node) for node in definition.root.children if node.kind in ("room", "area"))
+            found.extend(
+                _place(catalog, name, node)
+                for node in definition.root.children
+                if node.kind in ("room", "area")
+            )
     return tuple(found)
 
 
@@ -61,13 +65,21 @@ def _walk(node: SetNode) -> Iterator[SetNode]:
         yield from _walk(child)
 
 
-def random_story(catalog: Catalog, place: Place, rng: random.Random, lines: int, cast: tuple[str, ...]) -> str:
+def random_story(
+    catalog: Catalog, place: Place, rng: random.Random, lines: int, cast: tuple[str, ...]
+) -> str:
     """A script of so many story lines at a place, each with one fully named camera."""
     script = [f'storyboard "{place.set} {place.room}"']
-    script.extend(f"character {who} = {person}" for who, person in zip(_NAMES, rng.sample(cast, 2), strict=True))
+    script.extend(
+        f"character {who} = {person}" for who, person in zip(_NAMES, rng.sample(cast, 2), strict=True)
+    )
     room = f"{place.set}.{place.room}"
     script.append(f"scene here = {room} at {rng.choices(_TIMES, (1, 5, 2, 1))[0]}")
-    actions = [a for a in (catalog.get("action", n) for n in sorted(catalog.names("action"))) if isinstance(a, ActionDef)]
+    actions = [
+        a
+        for a in (catalog.get("action", n) for n in sorted(catalog.names("action")))
+        if isinstance(a, ActionDef)
+    ]
     script.extend(_story_line(place, rng, actions) for _ in range(lines))
     return "\n".join(script) + "\n"
 

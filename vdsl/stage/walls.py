@@ -232,8 +232,8 @@ def ceiling_mesh(room: Room, part: int) -> Mesh:
     """A room's ceiling, facing down, a little lighter than its walls."""
     floor = floor_mesh(room, part)
     vertices = floor.vertices + np.array([0, 0, room.size[2]], np.float32)
-    color = tuple(c + (1.0 - c) * 0.4 for c in room.wall_color)
-    return painted(vertices, floor.faces[:, ::-1], -floor.normals, color, "plaster", part)
+    r, g, b = (c + (1.0 - c) * 0.4 for c in room.wall_color)
+    return painted(vertices, floor.faces[:, ::-1], -floor.normals, (r, g, b), "plaster", part)
 
 
 def _quad(

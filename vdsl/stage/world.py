@@ -14,8 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from runtime.mesh import MATERIALS, Mesh, join
-from runtime.shapes import painted
 from runtime.raster.types import ONE_SIDED
+from runtime.shapes import painted
 from runtime.world import Solids, Spot, Wall, World, WorldObject
 
 from ..lang.definitions.prop import PropSpot
@@ -36,9 +36,9 @@ from .standing import clear_spot
 from .walls import (
     Cut,
     Stretch,
+    ceiling_mesh,
     cut_of,
     find_stretch,
-    ceiling_mesh,
     floor_mesh,
     skirting,
     stretches,

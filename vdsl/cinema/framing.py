@@ -5,6 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from .vectors import dot
+
 Array = NDArray[np.float64]
 
 
@@ -47,10 +49,10 @@ def solve(
     y_top, y_bottom, x = 1.0 - 2.0 * lines[0], 1.0 - 2.0 * lines[1], 2.0 * lines[2] - 1.0
     ky, kx = 2.0 * focal / sensor[1], 2.0 * focal / sensor[0]
     drop = lower - upper
-    low_up, low_back = (drop * up).sum(-1), (drop * back).sum(-1)
+    low_up, low_back = dot(drop, up), dot(drop, back)
     r = (-ky * low_up - y_bottom * low_back) / (y_top - y_bottom)
     lift = -y_top * r / ky  # of the aim along up, seen from ``upper``
     side = across - upper
-    shift = (side * right).sum(-1) - x * (r - (side * back).sum(-1)) / kx
+    shift = dot(side, right) - x * (r - dot(side, back)) / kx
     aim = upper + lift[..., None] * up + shift[..., None] * right
     return r, aim

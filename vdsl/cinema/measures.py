@@ -22,6 +22,7 @@ from .sight import backdrop_gaps, clear_lines, clear_of_people, hidden_walls
 from .sizes import PAPER_RADIUS, Size
 from .subject import SIGHT, Subject
 from .track import CameraTrack, camera_axes, project
+from .vectors import dot, length
 
 Bools = NDArray[np.bool_]
 
@@ -60,6 +61,7 @@ class Takes:
     others: pillars (foot [T, 3], crown [T, 3], radius) of everybody else
     ignore: object id whose boxes hide nothing (the thing filmed)
     interest: [T, 3] each, other points one would like to see
+    near: the boxes near the cameras at the sampled frames, where somebody has looked already
     """
 
     track: CameraTrack
@@ -71,6 +73,7 @@ class Takes:
     others: tuple[tuple[Array, Array, float], ...]
     ignore: int | None = None
     interest: tuple[Array, ...] = ()
+    near: space.Nearby | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -103,15 +106,12 @@ def measure(takes: Takes, subject: Subject, world: World, fps: float) -> Measure
     hidden = _hidden(world, track, at, camera, axes, picture, points[:, names.index("waist")])
     values, inside = _framing(takes, subject, at, picture)
     sight_index = [names.index(n) for n in SIGHT]
-    extra = [path[at] for path in takes.interest]
-    sight = np.stack([*points[:, sight_index].swapaxes(0, 1), *extra], axis=1)
+    sight = points[:, sight_index]
     others = [(foot[at], crown[at], radius) for foot, crown, radius in takes.others]
-    seen = clear_lines(world.solids, camera, sight, hidden, takes.ignore) & clear_of_people(
-        camera, sight, others
-    )
-    count = len(sight_index)
-    values |= _visibility(takes, inside[:, :, sight_index], seen[..., :count])
-    shown = _shown(takes, at, camera, axes, sight[:, count:], seen[..., count:])
+    seen = clear_lines(world.solids, camera, sight, hidden, takes.ignore)
+    seen &= clear_of_people(camera, sight, others)
+    values |= _visibility(takes, inside[:, :, sight_index], seen)
+    shown = _shown(takes, world, at, camera, axes, hidden, others)
     values["interest"] = _interest(takes, shown)
     somebody = inside[:, :, names.index("eyes")] | shown.any(axis=-1)
     values["empty"] = 1.0 - somebody.mean(axis=1)
@@ -121,7 +121,8 @@ def measure(takes: Takes, subject: Subject, world: World, fps: float) -> Measure
     values["elevation"] = np.degrees(-rotation[np.arange(len(camera)), _key_sample(takes, at), 1])
     values["backdrop_gap"] = _gaps(world, hidden, track, at, camera, axes, points[:, names.index("waist")])
 
-    room = space.clearance(world.solids, camera, hidden)
+    near = takes.near if takes.near is not None else space.nearby(world.solids, camera)
+    room = space.clearance(world.solids, near, hidden)
     people = space.to_people(camera, others)
     values["clearance"] = np.minimum(np.minimum(room.object, room.shown), people)
     return Measured(values, hidden, room.shown, people)
@@ -153,7 +154,7 @@ def _framing(
 ) -> tuple[dict[str, Array], Bools]:
     """Measures of where the landmarks are in the picture, and which are inside it [P, F, K]."""
     xy, window = picture.xy, takes.window
-    inside = (picture.depth > 0.05) & (xy > 0.0).all(-1) & (xy < 1.0).all(-1)
+    inside = _within(xy, picture.depth, 0.0)
     rows = np.arange(len(xy))
     upper = np.array([picture.names.index(s.upper) for s in takes.sizes])
     lower = np.array([picture.names.index(s.lower) for s in takes.sizes])
@@ -186,6 +187,12 @@ def _framing(
     }, inside
 
 
+def _within(xy: Array, depth: Array, margin: float) -> Bools:
+    """Which points are before the camera and inside the frame by so much of its size."""
+    x, y, far = xy[..., 0], xy[..., 1], 1.0 - margin
+    return np.asarray((depth > 0.05) & (x > margin) & (x < far) & (y > margin) & (y < far))
+
+
 def _lead(takes: Takes, subject: Subject, at: NDArray[np.int64], x: Array) -> Array:
     yaw = takes.track.rotation[:, at, 2]
     sideways = subject.face[None, at, 0] * np.sin(yaw) - subject.face[None, at, 1] * np.cos(yaw)
@@ -203,13 +210,25 @@ def _visibility(takes: Takes, inside: Bools, seen: Bools) -> dict[str, Array]:
 
 
 def _shown(
-    takes: Takes, at: NDArray[np.int64], camera: Array, axes: Array, points: Array, seen: Bools
+    takes: Takes,
+    world: World,
+    at: NDArray[np.int64],
+    camera: Array,
+    axes: Array,
+    hidden: Bools,
+    others: list[tuple[Array, Array, float]],
 ) -> Bools:
     """Which of the other points that matter are in the frame and not hidden, [P, F, K]."""
-    if not points.shape[1]:
+    if not takes.interest:
         return np.zeros((*camera.shape[:2], 0), bool)
+    points = np.stack([path[at] for path in takes.interest], axis=1)
+    F, K = points.shape[:2]  # they lie far apart: every one is looked at by itself
+    seen = clear_lines(
+        world.solids, np.repeat(camera, K, axis=1), points.reshape(F * K, 1, 3), hidden, takes.ignore
+    ).reshape(len(camera), F, K)
+    seen &= clear_of_people(camera, points, others)
     xy, depth = project(points[None], camera, axes, takes.track.focal[:, at], takes.track.sensor)
-    return (depth > 0.05) & (xy > 0.02).all(-1) & (xy < 0.98).all(-1) & seen
+    return _within(xy, depth, 0.02) & seen
 
 
 def _interest(takes: Takes, shown: Bools) -> Array:
@@ -250,8 +269,8 @@ def _foreground(
 
 def _face(takes: Takes, subject: Subject, at: NDArray[np.int64], camera: Array, eyes: Array) -> Array:
     to_camera = camera - eyes[None]
-    to_camera = to_camera / np.maximum(np.linalg.norm(to_camera, axis=-1, keepdims=True), 1e-9)
-    return _mean((to_camera * subject.face[None, at]).sum(-1), takes.window)
+    cosine = dot(to_camera, subject.face[None, at]) / np.maximum(length(to_camera), 1e-9)
+    return _mean(cosine, takes.window)
 
 
 def _motion(track: CameraTrack, roll: float, fps: float) -> dict[str, Array]:
@@ -260,13 +279,13 @@ def _motion(track: CameraTrack, roll: float, fps: float) -> dict[str, Array]:
     step = np.diff(track.position, axis=1) * fps
     turn = np.degrees(np.diff(track.rotation, axis=1)) * fps
     pitch = track.rotation[:, :-1, 1]
-    speed = np.linalg.norm(step, axis=-1)
+    speed = length(step)
     angular = np.sqrt(turn[..., 1] ** 2 + (turn[..., 2] * np.cos(pitch)) ** 2)
     jerk = np.diff(track.position, n=3, axis=1) * fps**3 if frames > 3 else np.zeros((len(zero), 1, 3))
     return {
         "speed": speed.max(axis=1) if frames > 1 else zero,
         "angular_speed": angular.max(axis=1) if frames > 1 else zero,
-        "jerk": np.sqrt((jerk**2).sum(-1).mean(axis=1)),
+        "jerk": np.sqrt(dot(jerk, jerk).mean(axis=1)),
         "horizon": np.degrees(np.abs(track.rotation[..., 0] - roll).max(axis=1)),
     }
 
@@ -302,5 +321,5 @@ def _gaps(
     heart: Array,
 ) -> Array:
     rays = _columns(track, at, axes)
-    length = np.maximum(np.linalg.norm(rays, axis=-1, keepdims=True), 1e-9)
-    return backdrop_gaps(world, hidden, camera, heart, rays / length)
+    rays = rays / np.maximum(length(rays), 1e-9)[..., None]
+    return backdrop_gaps(world, hidden, camera, heart, rays)

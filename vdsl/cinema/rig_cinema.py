@@ -16,6 +16,7 @@ from .framing import basis, direction, solve
 from .moves import FLOOR_CLEARANCE
 from .sizes import Size
 from .subject import Subject
+from .vectors import dot
 
 Array = NDArray[np.float64]
 
@@ -61,7 +62,7 @@ def frame(
 
     def solved(polar: Array) -> tuple[Array, Array]:
         right = basis(polar, phi)[0]
-        column = 0.5 - lead * (subject.face[at] * right).sum(-1)
+        column = 0.5 - lead * dot(subject.face[at], right)
         return solve(
             upper, lower, across, polar, phi, focal, film, (size.top * ones, size.bottom * ones, column)
         )

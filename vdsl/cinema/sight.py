@@ -11,6 +11,8 @@ from numpy.typing import NDArray
 
 from runtime.world import Solids, World
 
+from .vectors import dot, length
+
 Array = NDArray[np.float64]
 Bools = NDArray[np.bool_]
 
@@ -62,7 +64,7 @@ def backdrop_gaps(world: World, hidden: Bools, camera: Array, subject: Array, ra
     safe = np.where(np.abs(denominator) < 1e-9, 1e-9, denominator)
     t = (d[..., 0] * along[:, 1] - d[..., 1] * along[:, 0]) / safe
     s = (d[..., 0] * rays[..., None, 1] - d[..., 1] * rays[..., None, 0]) / safe
-    reach = np.linalg.norm(camera[..., :2] - subject[None, :, :2], axis=-1)[:, :, None, None]
+    reach = length(camera[..., :2] - subject[None, :, :2])[:, :, None, None]
     behind = (t > reach) & (s >= 0) & (s <= 1) & hidden[:, None, None, :]
     return np.asarray(behind.any(axis=3).mean(axis=(1, 2)))
 
@@ -98,8 +100,12 @@ def clear_lines(
     if hidden.shape[1]:
         near &= ~np.where(wall >= 0, hidden[:, np.maximum(wall, 0)], False)[:, None, :]
     p, f, b = np.nonzero(near)
-    ends = points[f] if points.ndim == 3 else points[p, f]
-    blocked = _cut(solids, boxes[b], camera[p, f], ends)  # [M, K]
+    eye, at = camera[p, f], (f,) if points.ndim == 3 else (p, f)
+    middle, spread = _bounds(points)
+    meets = _meets(solids, boxes[b], eye, middle[at], spread[at])
+    p, f, b = p[meets], f[meets], b[meets]
+    at = (f,) if points.ndim == 3 else (p, f)
+    blocked = _cut(solids, boxes[b], eye[meets], points[at])  # [M, K]
     seen = np.ones((P * F, K), bool)
     m, k = np.nonzero(blocked)
     seen[p[m] * F + f[m], k] = False
@@ -109,7 +115,7 @@ def clear_lines(
 def _near(solids: Solids, boxes: NDArray[np.int64], camera: Array, points: Array) -> Bools:
     """Boxes whose bounding sphere comes close to the line from camera to the middle of the points."""
     middle = points.mean(axis=-2)
-    spread = np.linalg.norm(points - middle[..., None, :], axis=-1).max(axis=-1)
+    spread = length(points - middle[..., None, :]).max(axis=-1)
     ray = (middle - camera).astype(np.float32)
     square = np.maximum(np.einsum("pfk,pfk->pf", ray, ray), 1e-9)
     centre = solids.centre[boxes].astype(np.float32)
@@ -125,9 +131,39 @@ def _near(solids: Solids, boxes: NDArray[np.int64], camera: Array, points: Array
     return np.asarray(away < reach**2)
 
 
+def _bounds(points: Array) -> tuple[Array, Array]:
+    """Middle of the points [..., K, 3] -> [..., 3], and how far they lie from it on the floor plan and in
+    height [..., 2]."""
+    middle = points.mean(axis=-2)
+    off = points - middle[..., None, :]
+    across, tall = length(off[..., :2]).max(axis=-1), np.abs(off[..., 2]).max(axis=-1)
+    return middle, np.stack([across, tall], axis=-1)
+
+
+def _meets(solids: Solids, box: NDArray[np.int64], camera: Array, middle: Array, spread: Array) -> Bools:
+    """Whether the line from camera m to the middle of its points meets box m grown by their spread: only
+    then one of its lines may cut the box. [M, 3], [M, 3], [M, 2] -> [M]."""
+    c, s = np.cos(solids.yaw)[box], np.sin(solids.yaw)[box]
+    half = solids.half[box] + spread[:, (0, 0, 1)]
+    start, ray = camera - solids.centre[box], middle - camera
+    enter, leave = np.zeros(len(box)), np.ones(len(box))
+    for axis in range(3):
+        if axis == 2:
+            o, r = start[:, 2], ray[:, 2]
+        else:
+            k = 1.0 - 2.0 * axis
+            o = c * start[:, axis] + k * s * start[:, 1 - axis]
+            r = c * ray[:, axis] + k * s * ray[:, 1 - axis]
+        inverse = 1.0 / np.where(np.abs(r) < 1e-9, 1e-9, r)
+        near, far = -o * inverse, half[:, axis] * np.abs(inverse)
+        np.maximum(enter, near - far, out=enter)
+        np.minimum(leave, near + far, out=leave)
+    return np.asarray(enter <= leave)
+
+
 def _cut(solids: Solids, box: NDArray[np.int64], camera: Array, points: Array) -> Bools:
     """Whether box m cuts the lines from camera m to its points: [M, 3], [M, K, 3] -> [M, K]."""
-    c, s = np.cos(solids.yaw[box])[:, None], np.sin(solids.yaw[box])[:, None]
+    c, s = np.cos(solids.yaw)[box, None], np.sin(solids.yaw)[box, None]
     start, stop = camera - solids.centre[box], points - solids.centre[box][:, None]
     origin = (c[:, 0] * start[:, 0] + s[:, 0] * start[:, 1], c[:, 0] * start[:, 1] - s[:, 0] * start[:, 0])
     end = (c * stop[..., 0] + s * stop[..., 1], c * stop[..., 1] - s * stop[..., 0], stop[..., 2])
@@ -158,9 +194,9 @@ def clear_of_people(camera: Array, points: Array, bodies: list[tuple[Array, Arra
         eye = camera[:, :, None, :2]
         ray = ends[..., :2] - eye
         start = foot[None, :, None, :2] - eye
-        square = np.maximum((ray**2).sum(-1), 1e-9)
-        t = np.clip((start * ray).sum(-1) / square, 0.0, 1.0)
-        away = np.linalg.norm(start - t[..., None] * ray, axis=-1)
+        square = np.maximum(dot(ray, ray), 1e-9)
+        t = np.clip(dot(start, ray) / square, 0.0, 1.0)
+        away = length(start - t[..., None] * ray)
         height = camera[:, :, None, 2] + t * (ends[..., 2] - camera[:, :, None, 2])
         seen &= ~((away < radius) & (height < crown[None, :, None, 2]) & (t < 0.97))
     return seen

@@ -9,6 +9,8 @@ from numpy.typing import NDArray
 
 from runtime.world import Solids, World
 
+from .vectors import dot, length
+
 Array = NDArray[np.float64]
 
 REACH = 1.0  # metres up to which clearance is measured
@@ -26,37 +28,74 @@ class Clearance:
     wall: Array
 
 
-def clearance(solids: Solids, camera: Array, hidden: NDArray[np.bool_]) -> Clearance:
-    """Clearance of cameras [P, F, 3]; hidden: [P, W] walls taken away."""
+@dataclass(frozen=True, eq=False)
+class Nearby:
+    """Boxes close to cameras, as M pairs: take [M], box [M], and the least distance over the frames [M].
+
+    count: how many takes there are; a pair's distance may be over :data:`REACH`, those closer are all there
+    """
+
+    count: int
+    take: NDArray[np.int64]
+    box: NDArray[np.int64]
+    away: Array
+
+    def only(self, rows: NDArray[np.int64]) -> Nearby:
+        """Of some of the takes (rows in rising order)."""
+        number = np.full(self.count, -1)
+        number[rows] = np.arange(len(rows))
+        kept = number[self.take] >= 0
+        return Nearby(len(rows), number[self.take[kept]], self.box[kept], self.away[kept])
+
+
+def nearby(solids: Solids, camera: Array) -> Nearby:
+    """The boxes near cameras [P, F, 3]."""
     P, F = camera.shape[:2]
-    best = [np.full(P, REACH) for _ in range(3)]
-    if len(solids.centre):
-        n, b, away = _pairs(solids, camera.reshape(-1, 3))
-        p, wall = n // F, solids.wall[b]
-        gone = np.zeros(len(b), bool)
-        if hidden.shape[1]:
-            gone = (wall >= 0) & hidden[p, np.maximum(wall, 0)]
-        for out, chosen in zip(best, (wall < 0, (wall >= 0) & ~gone, wall >= 0), strict=True):
-            np.minimum.at(out, p[chosen], away[chosen])
-    return Clearance(*best)
-
-
-def _pairs(solids: Solids, points: Array) -> tuple[NDArray[np.int64], NDArray[np.int64], Array]:
-    """Pairs (point, box) closer than about :data:`REACH`, and their signed distances."""
+    points = camera.reshape(-1, 3)
+    if not len(solids.centre) or not len(points):
+        return Nearby(P, np.zeros(0, np.int64), np.zeros(0, np.int64), np.zeros(0))
     low, high = points.min(axis=0) - REACH, points.max(axis=0) + REACH
-    radius = np.linalg.norm(solids.half, axis=1)
+    radius = length(solids.half)
     kept = np.flatnonzero(
         ((solids.centre + radius[:, None] > low) & (solids.centre - radius[:, None] < high)).all(axis=1)
     )
-    gap = points[:, None].astype(np.float32) - solids.centre[kept].astype(np.float32)
-    n, k = np.nonzero((gap**2).sum(-1) < ((radius[kept] + REACH) ** 2).astype(np.float32))
+    n, k = np.nonzero(_close(points, solids.centre[kept], radius[kept] + REACH))
     b = kept[k]
     d = points[n] - solids.centre[b]
-    c, s = np.cos(solids.yaw[b]), np.sin(solids.yaw[b])
-    local = np.stack([c * d[:, 0] + s * d[:, 1], c * d[:, 1] - s * d[:, 0], d[:, 2]], axis=-1)
-    q = np.abs(local) - solids.half[b]
-    away = np.linalg.norm(np.maximum(q, 0.0), axis=-1) + np.minimum(q.max(axis=-1), 0.0)
-    return n, b, away
+    c, s = np.cos(solids.yaw)[b], np.sin(solids.yaw)[b]
+    half = solids.half[b]
+    x = np.abs(c * d[:, 0] + s * d[:, 1]) - half[:, 0]
+    y = np.abs(c * d[:, 1] - s * d[:, 0]) - half[:, 1]
+    z = np.abs(d[:, 2]) - half[:, 2]
+    outside = np.sqrt(np.maximum(x, 0.0) ** 2 + np.maximum(y, 0.0) ** 2 + np.maximum(z, 0.0) ** 2)
+    away = outside + np.minimum(np.maximum(np.maximum(x, y), z), 0.0)
+    best = np.full((P, len(kept)), np.inf)
+    np.minimum.at(best, (n // F, k), away)
+    take, k = np.nonzero(best < REACH)
+    return Nearby(P, take, kept[k], best[take, k])
+
+
+def _close(points: Array, centres: Array, reach: Array) -> NDArray[np.bool_]:
+    """[N, B]: points no farther from centres than ``reach`` [B]; axis by axis, in single precision."""
+    p, c = points.astype(np.float32), centres.astype(np.float32)
+    square = np.zeros((len(p), len(c)), np.float32)
+    for axis in range(3):
+        gap = p[:, axis, None] - c[:, axis]
+        gap *= gap
+        square += gap
+    return np.asarray(square < (reach**2).astype(np.float32))
+
+
+def clearance(solids: Solids, near: Nearby, hidden: NDArray[np.bool_]) -> Clearance:
+    """Clearance of takes; hidden: [P, W] walls taken away."""
+    best = [np.full(near.count, REACH) for _ in range(3)]
+    wall = solids.wall[near.box]
+    gone = np.zeros(len(wall), bool)
+    if hidden.shape[1]:
+        gone = (wall >= 0) & hidden[near.take, np.maximum(wall, 0)]
+    for out, chosen in zip(best, (wall < 0, (wall >= 0) & ~gone, wall >= 0), strict=True):
+        np.minimum.at(out, near.take[chosen], near.away[chosen])
+    return Clearance(*best)
 
 
 def to_people(camera: Array, bodies: list[tuple[Array, Array, float]]) -> Array:
@@ -64,9 +103,10 @@ def to_people(camera: Array, bodies: list[tuple[Array, Array, float]]) -> Array:
     best = np.full(len(camera), REACH)
     for foot, crown, radius in bodies:
         axis = crown - foot
-        square = np.maximum((axis**2).sum(-1), 1e-9)
-        t = np.clip(((camera - foot) * axis).sum(-1) / square, 0.0, 1.0)
-        away = np.linalg.norm(camera - foot - t[..., None] * axis, axis=-1) - radius
+        square = np.maximum(dot(axis, axis), 1e-9)
+        start = camera - foot
+        t = np.clip(dot(start, axis) / square, 0.0, 1.0)
+        away = length(start - t[..., None] * axis) - radius
         np.minimum(best, away.min(axis=1), out=best)
     return best
 

@@ -21,7 +21,7 @@ from ..cinema import rig_cinema, rig_paper
 from ..cinema.measures import Measured, Takes, measure, samples
 from ..cinema.score import geometry_scores
 from ..cinema.sizes import Size, size_of
-from ..cinema.space import stage_of
+from ..cinema.space import nearby, stage_of
 from ..cinema.subject import Subject, person, place, thing
 from ..cinema.track import CameraTrack
 from ..lang.ir import Shot, Target
@@ -169,13 +169,15 @@ def _consider(
         story = stories[s]
         shooting = shoot(shot, subject, sample, rows, filming.rig, filming.sensor, filming.fps)
         stage = stage_of(filming.world, subject.position[[0, -1]])
-        early = no_room(shooting, subject, filming.world.solids, stage, samples(subject.frames))
+        solids, at = filming.world.solids, samples(subject.frames)
+        near = nearby(solids, shooting.track.position[:, at])
+        early = no_room(shooting, near, solids, stage, at)
         rejected.update(REASONS[k] for k in early[early >= 0])
         kept = np.flatnonzero(early < 0)
         if not len(kept):
             continue
         shooting = shooting.only(kept)
-        takes = _takes(shot, subject, shooting, story, filming)
+        takes = replace(_takes(shot, subject, shooting, story, filming), near=near.only(kept))
         measured = measure(takes, subject, filming.world, filming.fps)
         reason = reasons(shooting, measured, subject)
         out.append(

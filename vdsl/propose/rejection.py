@@ -10,8 +10,9 @@ from runtime.world import Solids
 from ..cinema.angles import LOOKS_DOWN, LOOKS_UP
 from ..cinema.measures import Measured
 from ..cinema.moves import FLOOR_CLEARANCE, family
-from ..cinema.space import Stage, clearance
+from ..cinema.space import Nearby, Stage, clearance
 from ..cinema.subject import Subject
+from ..cinema.vectors import length
 from .shooting import Shooting
 
 #: In the order they are asked; a candidate is counted under the first that holds.
@@ -53,12 +54,15 @@ _FASTEST, _TURNS = 5.0, 130.0  # metres and degrees a second
 
 
 def no_room(
-    shooting: Shooting, subject: Subject, solids: Solids, stage: Stage, at: NDArray[np.int64]
+    shooting: Shooting, near: Nearby, solids: Solids, stage: Stage, at: NDArray[np.int64]
 ) -> NDArray[np.int64]:
-    """What can be said before anything is looked at: index into :data:`REASONS` [P], −1 to go on."""
+    """What can be said before anything is looked at: index into :data:`REASONS` [P], −1 to go on.
+
+    near: the boxes near the cameras at the frames ``at``
+    """
     camera = shooting.track.position[:, at]
     none = np.zeros((len(camera), 0), bool)
-    room = clearance(solids, camera, none)
+    room = clearance(solids, near, none)
     ceiling = stage.ceiling if stage.ceiling is not None else np.inf
     return _first(
         {
@@ -95,7 +99,7 @@ def reasons(shooting: Shooting, measured: Measured, subject: Subject) -> NDArray
     """Index into :data:`REASONS` of every candidate that has room [P], −1 for those to keep."""
     v, track = measured.values, shooting.track
     paper = shooting.rig == "paper"
-    own = np.linalg.norm(track.position - subject.landmarks["eyes"][None], axis=-1).min(axis=1)
+    own = length(track.position - subject.landmarks["eyes"][None]).min(axis=1)
     moving = np.array([family(m) in ("push", "pull", "zoom", "tilt", "pan") for m in shooting.movements])
     keeps = np.array([family(m) in ("follow", "arc") for m in shooting.movements])
     drift = np.where(moving, 0.0, v["size_drift"])

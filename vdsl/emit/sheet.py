@@ -95,7 +95,7 @@ def _facts(build: Build, built: BuiltShot) -> str:
     best = built.takes[0]
     focal = best.camera.track.focal
     low, high = f"{focal.min():.0f}", f"{focal.max():.0f}"
-    lens = low if low == high else f"{low}–{high}"
+    lens = low if low == high else f"{low}-{high}"
     length = seconds_words(built.frames, build.storyboard.fps)
     return f"{length}   ·   {lens} mm   ·   score {best.score:.2f}   ·   of {built.proposals}"
 

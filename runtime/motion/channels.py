@@ -56,14 +56,18 @@ class Channels:
 
     def __init__(self, frames: int) -> None:
         self._zero = np.zeros(frames)
+        self._zeros = np.zeros((2, frames))
         self._values: dict[str, Array] = {}
 
     def __getitem__(self, name: str) -> Array:
         return self._values.get(name, self._zero)
 
     def pair(self, part: str, axis: str) -> Array:
-        """[2, T]: left and right."""
-        return np.stack([self[f"{part}_l.{axis}"], self[f"{part}_r.{axis}"]])
+        """[2, T]: left and right; not to be written to."""
+        left, right = self[f"{part}_l.{axis}"], self[f"{part}_r.{axis}"]
+        if left is self._zero and right is self._zero:
+            return self._zeros
+        return np.stack([left, right])
 
     def add(self, name: str, value: Array) -> None:
         self._values[name] = self._values[name] + value if name in self._values else value

@@ -11,7 +11,7 @@ from runtime.body.skeleton import JOINT, Skeleton
 
 from .curves import plateau, ramp
 from .figure import Figure
-from .rotations import rot_x, rot_y, rot_z, wrap
+from .rotations import rot_z, rot_zyx, wrap
 from .types import Reach
 
 Array = NDArray[np.float64]
@@ -180,7 +180,7 @@ class HandTracks:
     def _up(self, k: int) -> Array:
         """[T, 3, 3]: how a held thing stands."""
         m = 1.0 - 2.0 * k
-        return rot_z(self.hand_yaw(k)) @ rot_y(-self.lifted[k]) @ rot_x(m * self.tilt[k])
+        return rot_zyx(self.hand_yaw(k), -self.lifted[k], m * self.tilt[k])
 
     def _to_part(self, k: int, held: Held, part: str) -> Array:
         """[T, 3]: from the palm to a part of what is held; upright a spout comes in above its place."""

@@ -52,11 +52,13 @@ def keyed(times: tuple[float, ...], values: tuple[float, ...], t: Array) -> Arra
 
 def convolve(x: Array, kernel: Array, centre: int) -> Array:
     """Filters along axis 0; ends are held; ``centre`` is the kernel's sample at lag 0."""
-    n = len(kernel)
-    before, after = n - 1 - centre, centre
-    padded = np.concatenate([np.repeat(x[:1], before, 0), x, np.repeat(x[-1:], after, 0)])
-    windows = np.lib.stride_tricks.sliding_window_view(padded, n, axis=0)
-    out: Array = windows @ kernel[::-1]
+    if x.ndim > 1:
+        columns = x.reshape(len(x), -1).T
+        return np.stack([convolve(c, kernel, centre) for c in columns], axis=1).reshape(x.shape)
+    before, frames = len(kernel) - 1 - centre, len(x)
+    padded = np.empty(frames + len(kernel) - 1)
+    padded[:before], padded[before : before + frames], padded[before + frames :] = x[0], x, x[-1]
+    out: Array = np.convolve(padded, kernel, mode="valid")
     return out
 
 
@@ -82,7 +84,7 @@ def below(limit: Array, reach: int) -> Array:
     """A smooth curve [T] nowhere above ``limit``: the minimum over a window, then a mean over it."""
     if reach < 1:
         return limit
-    padded = np.pad(limit, 2 * reach, mode="edge")
+    padded = np.concatenate([np.repeat(limit[:1], 2 * reach), limit, np.repeat(limit[-1:], 2 * reach)])
     low = np.lib.stride_tricks.sliding_window_view(padded, 2 * reach + 1).min(axis=-1)
     kernel = np.hanning(2 * reach + 3)[1:-1]
     out: Array = np.convolve(low, kernel / kernel.sum(), mode="valid")

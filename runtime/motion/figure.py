@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from runtime.body.skeleton import JOINT, JOINTS, PARENTS, Skeleton
 
-from .ik import bone_rotation, two_bone
+from .ik import bind_frame, bone_rotation, two_bone
 from .rotations import (
     across,
     blend,
@@ -25,6 +25,8 @@ from .rotations import (
     rot_x,
     rot_y,
     rot_z,
+    rot_zy,
+    rot_zyx,
     rotation,
     rotation_vector,
     steady,
@@ -35,6 +37,24 @@ from .rotations import (
 
 Array = NDArray[np.float64]
 SIDES = ("l", "r")
+
+
+def _joints(*names: str) -> list[int]:
+    """Joints of the left side, then of the right."""
+    return [JOINT[f"{name}_{s}"] for s in SIDES for name in names]
+
+
+#: Limbs of both sides, left first, and which way they flex in the bind pose.
+_THIGHS, _SHINS, _FEET = _joints("thigh"), _joints("shin"), _joints("foot")
+_UPPERARMS, _FOREARMS, _HANDS = _joints("upperarm"), _joints("forearm"), _joints("hand")
+_BACK, _FRONT = np.array([-1.0, 0.0, 0.0]), np.array([1.0, 0.0, 0.0])
+#: Joints that are posed together, each of them by its parent.
+_KNUCKLES, _MIDDLES, _INDEXTIPS = (
+    _joints("fingers", "thumb"),
+    _joints("fingertips", "index"),
+    _joints("indextip"),
+)
+_FACE = [JOINT["jaw"], *_joints("eye", "lid", "brow", "mouth")]
 #: +1 left, -1 right, to be multiplied with [2, T] arrays.
 MIRROR = np.array([1.0, -1.0])[:, None]
 
@@ -70,7 +90,7 @@ def palm_rotation(heading: Array, inward: Array, pitch: Array, tilt: Array, skel
     """
     yaw = heading[None] - MIRROR * inward
     basis = np.stack([_canonical(skeleton, s) for s in SIDES])
-    return rot_z(yaw) @ rot_y(-pitch) @ rot_x(MIRROR * tilt) @ basis[:, None]
+    return rot_zyx(yaw, -pitch, MIRROR * tilt) @ basis[:, None]
 
 
 def _hand_axes(skeleton: Skeleton, side: str) -> tuple[Array, Array, Array]:
@@ -111,6 +131,17 @@ class Figure:
         self._upper = float(np.linalg.norm(bind[JOINT["forearm_l"]] - bind[JOINT["upperarm_l"]]))
         self._lower = float(np.linalg.norm(bind[JOINT["hand_l"]] - bind[JOINT["forearm_l"]]))
         self.arm_length = self._upper + self._lower
+        self._thigh_frames = self._bind_frames(_THIGHS, _SHINS, _BACK)
+        self._shin_frames = self._bind_frames(_SHINS, _FEET, _BACK)
+        self._upperarm_frames = self._bind_frames(_UPPERARMS, _FOREARMS, _FRONT)
+        self._forearm_frames = self._bind_frames(_FOREARMS, _HANDS, _FRONT)
+        self._palm_offset = palm_offset(skeleton)[:, None]
+
+    def _bind_frames(self, bones: list[int], ends: list[int], side: Array) -> Array:
+        """[2, 1, 3, 3]: bind frames of bones of both sides."""
+        bind = self.skeleton.bind
+        frames = [bind_frame(bind[e] - bind[b], side) for b, e in zip(bones, ends, strict=True)]
+        return np.stack(frames)[:, None]
 
     def turn(self, joint: str, local: Array) -> None:
         """Sets a joint by its local rotation [T, 3, 3]; its parent has to be set."""
@@ -118,6 +149,18 @@ class Figure:
         base = self.rotation[:, PARENTS[j]]
         self.rotation[:, j] = base @ local
         self.position[:, j] = self.position[:, PARENTS[j]] + base @ self.offsets[j]
+
+    def _turn_all(self, joints: list[int], local: Array) -> None:
+        """Sets several joints by their local rotations [T, N, 3, 3]; their parents have to be set."""
+        parents = [PARENTS[j] for j in joints]
+        base = self.rotation[:, parents]
+        self.rotation[:, joints] = base @ local
+        self.position[:, joints] = self.position[:, parents] + turned(base, self.offsets[joints])
+
+    def _set(self, joints: list[int], position: Array, rotation: Array) -> None:
+        """Sets a joint of both sides: position [2, T, 3], rotation [2, T, 3, 3]."""
+        for k, j in enumerate(joints):
+            self.position[:, j], self.rotation[:, j] = position[k], rotation[k]
 
     def _place(self, joint: str) -> Array:
         """Where a joint is by its parent [T, 3], before it is turned itself."""
@@ -138,11 +181,11 @@ class Figure:
         """Hips at ``root`` [T, 3]; pelvis: turn, pitch, roll [T]; bend: twist, lean, side of the whole spine
         [T]; shoulders: up and forward [2, T] of each clavicle."""
         turn, pitch, roll = pelvis
-        self.rotation[:, 0] = rot_z(yaw + turn) @ rot_y(pitch) @ rot_x(roll)
+        self.rotation[:, 0] = rot_zyx(yaw + turn, pitch, roll)
         self.position[:, 0] = root
         twist, lean, side = bend
-        self.turn("spine", rot_z(0.4 * twist) @ rot_y(0.5 * lean) @ rot_x(-0.5 * side))
-        self.turn("chest", rot_z(0.6 * twist) @ rot_y(0.5 * lean) @ rot_x(-0.5 * side))
+        self.turn("spine", rot_zyx(0.4 * twist, 0.5 * lean, -0.5 * side))
+        self.turn("chest", rot_zyx(0.6 * twist, 0.5 * lean, -0.5 * side))
         up, forward = shoulders
         for k, s in enumerate(SIDES):
             m = 1.0 if s == "l" else -1.0
@@ -151,7 +194,7 @@ class Figure:
     def head(self, turn: Array, nod: Array, tilt: Array) -> None:
         """Neck and head share the angles [T]; tilt to the left is positive."""
         for joint, share in (("neck", 0.4), ("head", 0.6)):
-            self.turn(joint, rot_z(share * turn) @ rot_y(share * nod) @ rot_x(-share * tilt))
+            self.turn(joint, rot_zyx(share * turn, share * nod, -share * tilt))
 
     # -- limbs -----------------------------------------------------------------------------
 
@@ -170,22 +213,10 @@ class Figure:
         pole = np.stack([np.cos(knee_yaw), np.sin(knee_yaw), np.zeros_like(yaw)], axis=-1)
         pole[..., 2] += 0.25
         limb = two_bone(root, ankle, thigh, shin, pole, soft=False)
-        foot = rot_z(yaw) @ rot_y(pitch)
-        back = np.array([-1.0, 0.0, 0.0])
+        self._set(_THIGHS, root, bone_rotation(limb.middle - root, limb.hinge, self._thigh_frames))
+        self._set(_SHINS, limb.middle, bone_rotation(limb.end - limb.middle, limb.hinge, self._shin_frames))
+        self._set(_FEET, limb.end, rot_zy(yaw, pitch))
         for k, s in enumerate(SIDES):
-            t, n, f = (JOINT[f"{name}_{s}"] for name in ("thigh", "shin", "foot"))
-            self.position[:, t], self.position[:, n], self.position[:, f] = (
-                root[k],
-                limb.middle[k],
-                limb.end[k],
-            )
-            self.rotation[:, t] = bone_rotation(
-                limb.middle[k] - root[k], limb.hinge[k], bind[n] - bind[t], back
-            )
-            self.rotation[:, n] = bone_rotation(
-                limb.end[k] - limb.middle[k], limb.hinge[k], bind[f] - bind[n], back
-            )
-            self.rotation[:, f] = foot[k]
             self.turn(f"toe_{s}", rot_y(-toes[k]))
 
     def shoulders(self) -> Array:
@@ -213,70 +244,41 @@ class Figure:
         w = goals.weight[..., None]
         pole = unit((1 - w) * pole_fk + w * natural)
         fk_relative = self._wrist_angles(pose)
-        offset = palm_offset(self.skeleton)
-        goal_wrist = goals.position - turned(goals.rotation, offset[:, None])
+        offset, axis = self._palm_offset, self._forearm_frames[:, :, 0]
+        goal_wrist = goals.position - turned(goals.rotation, offset)
         arc = turned(heading[None], np.stack([[[0.75, m * 0.45, 0.0]] for m in (1.0, -1.0)]))
         for _ in range(3 if goals.weight.any() else 1):
             way = goal_wrist - wrist_fk
             target = wrist_fk + w * way + (0.7 * w * (1 - w) * norm(way)[..., None]) * arc
             limb = two_bone(root, target, self._upper, self._lower, pole)
-            upper, fore, hand = self._arm_rotations(
-                root, limb.middle, limb.end, limb.hinge, fk_relative, goals
-            )
-            goal_wrist = goals.position - turned(hand, offset[:, None])
-        for k, s in enumerate(SIDES):
-            a, f, h = (JOINT[f"{name}_{s}"] for name in ("upperarm", "forearm", "hand"))
-            self.position[:, a], self.position[:, f], self.position[:, h] = (
-                root[k],
-                limb.middle[k],
-                limb.end[k],
-            )
-            self.rotation[:, a], self.rotation[:, f], self.rotation[:, h] = upper[k], fore[k], hand[k]
-        palm: Array = limb.end + turned(hand, offset[:, None])
+            fore = bone_rotation(limb.end - limb.middle, limb.hinge, self._forearm_frames)
+            relative = _wrists(fore, fk_relative, goals, axis)
+            hand = fore @ relative
+            goal_wrist = goals.position - turned(hand, offset)
+        swivel = dot(rotation_vector_twist(relative, axis), axis)
+        upper = bone_rotation(limb.middle - root, limb.hinge, self._upperarm_frames)
+        self._set(_UPPERARMS, root, upper)
+        self._set(_FOREARMS, limb.middle, fore @ rotation(axis * (0.45 * swivel)[..., None]))
+        self._set(_HANDS, limb.end, hand)
+        palm: Array = limb.end + turned(hand, offset)
         return palm
 
     def _wrist_angles(self, pose: ArmPose) -> Array:
         """Rotation of each hand against its forearm [2, T, 3, 3] in the bind frame."""
-        out = []
-        for k, s in enumerate(SIDES):
-            fingers, palm, thumb = _hand_axes(self.skeleton, s)
-            m = 1.0 if s == "l" else -1.0
-            turn = rotation(fingers * (m * pose.turn[k])[:, None])
-            side = rotation(cross(fingers, thumb) * pose.side[k][:, None])
-            bend = rotation(cross(fingers, palm) * pose.wrist[k][:, None])
-            out.append(turn @ side @ bend)
-        return np.stack(out)
-
-    def _arm_rotations(
-        self, root: Array, elbow: Array, wrist: Array, hinge: Array, fk: Array, goals: HandGoals
-    ) -> tuple[Array, Array, Array]:
-        """World rotations of upper arms, forearms and hands, each [2, T, 3, 3]; wrists within limits."""
-        bind = self.skeleton.bind
-        upper, fore, axes = [], [], []
-        front = np.array([1.0, 0.0, 0.0])
-        for k, s in enumerate(SIDES):
-            a, f, h = (JOINT[f"{name}_{s}"] for name in ("upperarm", "forearm", "hand"))
-            upper.append(bone_rotation(elbow[k] - root[k], hinge[k], bind[f] - bind[a], front))
-            fore.append(bone_rotation(wrist[k] - elbow[k], hinge[k], bind[h] - bind[f], front))
-            axes.append(unit(bind[h] - bind[f]))
-        base, axis = np.stack(fore), np.stack(axes)[:, None]
-        relative = fk
-        if goals.turning.any():
-            goal = np.swapaxes(base, -1, -2) @ goals.rotation
-            relative = _within_limits(blend(fk, goal, goals.turning), axis)
-        swivel = dot(rotation_vector_twist(relative, axis), axis)
-        return np.stack(upper), base @ rotation(axis * (0.45 * swivel)[..., None]), base @ relative
+        axes = np.array([_hand_axes(self.skeleton, s) for s in SIDES])
+        fingers, palm, thumb = axes.swapaxes(0, 1)[:, :, None]  # [2, 1, 3] each
+        turn = rotation(fingers * (MIRROR * pose.turn)[..., None])
+        side = rotation(cross(fingers, thumb) * pose.side[..., None])
+        bend = rotation(cross(fingers, palm) * pose.wrist[..., None])
+        return turn @ side @ bend
 
     def fingers(self, curl: Array, point: Array, thumb: Array) -> None:
         """Fingers [2, T]: curl 0 straight .. 1 fist; point: the index stays straight; thumb curls 0..1."""
-        for k, s in enumerate(SIDES):
-            m = -1.0 if s == "l" else 1.0
-            first, second = 1.35 * curl[k], 1.7 * curl[k]
-            self.turn(f"fingers_{s}", rot_x(m * first))
-            self.turn(f"fingertips_{s}", rot_x(m * second))
-            self.turn(f"index_{s}", rot_x(-m * first * point[k]))
-            self.turn(f"indextip_{s}", rot_x(m * second * (1 - point[k])))
-            self.turn(f"thumb_{s}", rot_x(m * 0.55 * thumb[k]) @ rot_z(m * 0.35 * thumb[k]))
+        first, second = -MIRROR * 1.35 * curl, -MIRROR * 1.7 * curl
+        thumbs = rot_x(-MIRROR * 0.55 * thumb) @ rot_z(-MIRROR * 0.35 * thumb)
+        self._turn_all(_KNUCKLES, _in_order(rot_x(first), thumbs))
+        self._turn_all(_MIDDLES, _in_order(rot_x(second), rot_x(-first * point)))
+        self._turn_all(_INDEXTIPS, _in_order(rot_x(second * (1 - point))))
 
     # -- face ------------------------------------------------------------------------------
 
@@ -286,13 +288,12 @@ class Figure:
         """eyes: turn, down [T]; lids [T]: 0 open .. 1 shut; brows: up [2, T] and knit [T]; mouth [T]: smile
         -1..1; jaw [T]: open 0..1."""
         turn, down = eyes
-        self.turn("jaw", rot_y(0.30 * jaw))
-        for k, s in enumerate(SIDES):
-            m = 1.0 if s == "l" else -1.0
-            self.turn(f"eye_{s}", rot_z(turn) @ rot_y(down))
-            self.turn(f"lid_{s}", rot_y(0.95 * lids + 0.35 * np.clip(down, -0.4, 0.5)))
-            self.turn(f"brow_{s}", rot_z(-m * 0.05 * brows[1]) @ rot_y(-0.16 * brows[0][k] + 0.05 * brows[1]))
-            self.turn(f"mouth_{s}", rot_z(m * 0.10 * mouth) @ rot_y(-0.16 * mouth))
+        still, shut, knit = np.zeros(self.frames), 0.95 * lids + 0.35 * np.clip(down, -0.4, 0.5), brows[1]
+        about_z, about_y = [still], [0.30 * jaw]
+        for m, up in zip((1.0, -1.0), brows[0], strict=True):
+            about_z += [turn, still, -m * 0.05 * knit, m * 0.10 * mouth]
+            about_y += [down, shut, -0.16 * up + 0.05 * knit, -0.16 * mouth]
+        self._turn_all(_FACE, np.swapaxes(rot_zy(np.stack(about_z), np.stack(about_y)), 0, 1))
 
     # -- places ----------------------------------------------------------------------------
 
@@ -328,6 +329,19 @@ def _arm_directions(pose: ArmPose) -> tuple[Array, Array]:
     flip = np.ones((2, 1, 3))
     flip[1, 0, 1] = -1.0
     return down * flip, forward * flip
+
+
+def _in_order(*locals: Array) -> Array:
+    """Local rotations [2, T, 3, 3] of some joints in the order of :func:`_joints`: [T, N, 3, 3]."""
+    return np.swapaxes(np.concatenate([np.stack(side) for side in zip(*locals, strict=True)]), 0, 1)
+
+
+def _wrists(fore: Array, fk: Array, goals: HandGoals, axis: Array) -> Array:
+    """Rotations of hands against forearms [2, T, 3, 3]: as by angles, or drawn to the goals within limits."""
+    if not goals.turning.any():
+        return fk
+    goal = np.swapaxes(fore, -1, -2) @ goals.rotation
+    return _within_limits(blend(fk, goal, goals.turning), axis)
 
 
 def rotation_vector_twist(matrix: Array, axis: Array) -> Array:

@@ -55,15 +55,21 @@ def two_bone(
     return Limb(middle, root + axis * reach[..., None], cross(side, axis))
 
 
-def bone_rotation(direction: Array, hinge: Array, bind: Array, bind_side: Array) -> Array:
+def bind_frame(bind: Array, bind_side: Array) -> Array:
+    """[3, 3], what :func:`bone_rotation` needs of the bind pose: the bone's direction [3], and where it
+    swings to on flexing [3]."""
+    b = unit(bind)
+    s = across(bind_side, b)
+    return np.stack([b, s, cross(b, s)])
+
+
+def bone_rotation(direction: Array, hinge: Array, frame: Array) -> Array:
     """World rotation of a bone that points along ``direction`` with its flexion axis on ``hinge``.
 
-    bind [3], bind_side [3]: in the bind pose the bone's direction, and where it swings to on flexing
+    frame: its :func:`bind_frame`, broadcast against the leading axes
     """
     d = unit(direction)
     e = unit(cross(hinge, d))
     world = np.empty((*d.shape, 3))
     world[..., 0], world[..., 1], world[..., 2] = d, e, cross(d, e)
-    b = unit(bind)
-    s = across(bind_side, b)
-    return world @ np.stack([b, s, cross(b, s)])
+    return world @ frame

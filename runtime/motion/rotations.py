@@ -36,23 +36,59 @@ def _about(angle: Array, i: int, j: int) -> Array:
     return out
 
 
+def rot_zyx(z: Array, y: Array, x: Array) -> Array:
+    """``rot_z(z) @ rot_y(y) @ rot_x(x)`` in one go: angles [...] of the same shape -> [..., 3, 3]."""
+    cz, sz, cy, sy, cx, sx = np.cos(z), np.sin(z), np.cos(y), np.sin(y), np.cos(x), np.sin(x)
+    czsy, szsy = cz * sy, sz * sy
+    out = np.empty((*sz.shape, 3, 3))
+    out[..., 0, 0] = cz * cy
+    out[..., 0, 1] = czsy * sx - sz * cx
+    out[..., 0, 2] = czsy * cx + sz * sx
+    out[..., 1, 0] = sz * cy
+    out[..., 1, 1] = szsy * sx + cz * cx
+    out[..., 1, 2] = szsy * cx - cz * sx
+    out[..., 2, 0] = -sy
+    out[..., 2, 1] = cy * sx
+    out[..., 2, 2] = cy * cx
+    return out
+
+
+def rot_zy(z: Array, y: Array) -> Array:
+    """``rot_z(z) @ rot_y(y)`` in one go."""
+    cz, sz, cy, sy = np.cos(z), np.sin(z), np.cos(y), np.sin(y)
+    out = np.zeros((*sz.shape, 3, 3))
+    out[..., 0, 0] = cz * cy
+    out[..., 0, 1] = -sz
+    out[..., 0, 2] = cz * sy
+    out[..., 1, 0] = sz * cy
+    out[..., 1, 1] = cz
+    out[..., 1, 2] = sz * sy
+    out[..., 2, 0] = -sy
+    out[..., 2, 2] = cy
+    return out
+
+
 def rotation(vector: Array) -> Array:
     """Rodrigues: rotation vectors [..., 3] -> matrices."""
-    angle = norm(vector)
-    x, y, z = vector[..., 0], vector[..., 1], vector[..., 2]
-    safe = np.maximum(angle, 1e-12)
-    a = np.where(angle < 1e-6, 1.0, np.sin(angle) / safe)
-    b = np.where(angle < 1e-6, 0.5, (1.0 - np.cos(angle)) / (safe * safe))
-    out = np.empty((*angle.shape, 3, 3))
-    out[..., 0, 0] = 1.0 - b * (y * y + z * z)
-    out[..., 1, 1] = 1.0 - b * (x * x + z * z)
-    out[..., 2, 2] = 1.0 - b * (x * x + y * y)
-    out[..., 0, 1] = b * x * y - a * z
-    out[..., 1, 0] = b * x * y + a * z
-    out[..., 0, 2] = b * x * z + a * y
-    out[..., 2, 0] = b * x * z - a * y
-    out[..., 1, 2] = b * y * z - a * x
-    out[..., 2, 1] = b * y * z + a * x
+    half = 0.5 * np.maximum(norm(vector), 1e-9)
+    s = np.sin(half) / half
+    # a quaternion's way to a matrix: no difference of nearly equal numbers at small angles
+    q = (0.5 * s)[..., None] * vector
+    w2 = 2.0 * np.cos(half)
+    x, y, z = q[..., 0], q[..., 1], q[..., 2]
+    x2, y2, z2 = x + x, y + y, z + z
+    xx, yy, zz, xy, xz, yz = x * x2, y * y2, z * z2, x * y2, x * z2, y * z2
+    wx, wy, wz = w2 * x, w2 * y, w2 * z
+    out = np.empty((*half.shape, 3, 3))
+    out[..., 0, 0] = 1.0 - (yy + zz)
+    out[..., 1, 1] = 1.0 - (xx + zz)
+    out[..., 2, 2] = 1.0 - (xx + yy)
+    out[..., 0, 1] = xy - wz
+    out[..., 1, 0] = xy + wz
+    out[..., 0, 2] = xz + wy
+    out[..., 2, 0] = xz - wy
+    out[..., 1, 2] = yz - wx
+    out[..., 2, 1] = yz + wx
     return out
 
 

@@ -67,8 +67,9 @@ SIGN = {
 
 
 def _weights(path: Array, draw: Draw) -> Array:
-    """w_λ(t/(T − 1)), [P, T]."""
-    return ease(clock(len(path))[None, :], draw.lam[:, None])
+    """w_λ(t/(T − 1)), [P, T]; of the few values of λ each is worked out once."""
+    lam, which = np.unique(draw.lam, return_inverse=True)
+    return np.asarray(ease(clock(len(path))[None, :], lam[:, None])[which])
 
 
 def _at(path: Array, time: Array) -> Array:
@@ -109,7 +110,9 @@ def follow(path: Array, draw: Draw, sign: float) -> Path3:
     """``p̂(w) + r·dir``, looking at p̂(t)."""
     offset = draw.offset[:, None]
     arm = (draw.r[:, None] * direction(draw.theta, draw.phi))[:, None]
-    camera = _lifted(_at(path, _weights(path, draw)) + offset + arm)
+    lam, which = np.unique(draw.lam, return_inverse=True)
+    eased = _at(path, ease(clock(len(path))[None, :], lam[:, None]))
+    camera = _lifted(eased[which] + (offset + arm))
     return camera, path[None] + offset, _hold(draw.focal, len(path))
 
 
@@ -211,5 +214,7 @@ def track_of(
     position, look_at, focal = MOVES[family(movement)](path, draw, SIGN.get(movement, 1.0))
     look_at = np.broadcast_to(look_at, position.shape).copy()
     rotation = look_at_rotation(position, look_at, roll)
-    rotation[..., 2] = np.unwrap(rotation[..., 2], axis=-1)
+    yaw = rotation[..., 2]
+    if np.abs(np.diff(yaw, axis=-1)).max(initial=0.0) > np.pi:
+        rotation[..., 2] = np.unwrap(yaw, axis=-1)
     return CameraTrack(position, rotation, focal, look_at, sensor)

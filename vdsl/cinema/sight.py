@@ -90,45 +90,60 @@ def clear_lines(
     """
     P, F = camera.shape[:2]
     K = points.shape[-2]
-    boxes = np.arange(len(solids.centre))
-    if ignore is not None:
-        boxes = boxes[solids.object != ignore]
-    if not len(boxes):
+    eye, own = camera.reshape(-1, 3), points.ndim == 4
+    points = points.reshape(-1, K, 3)  # of every camera its own, or of every frame
+    boxes = _between(solids, eye, points, ignore)
+    if not len(boxes) or not len(eye):
         return np.ones((P, F, K), bool)
-    near = _near(solids, boxes, camera, points)  # [P, F, B]
-    wall = solids.wall[boxes]
-    if hidden.shape[1]:
-        near &= ~np.where(wall >= 0, hidden[:, np.maximum(wall, 0)], False)[:, None, :]
-    p, f, b = np.nonzero(near)
-    eye, at = camera[p, f], (f,) if points.ndim == 3 else (p, f)
     middle, spread = _bounds(points)
-    meets = _meets(solids, boxes[b], eye, middle[at], spread[at])
-    p, f, b = p[meets], f[meets], b[meets]
-    at = (f,) if points.ndim == 3 else (p, f)
-    blocked = _cut(solids, boxes[b], eye[meets], points[at])  # [M, K]
+    ray = middle - eye if own else (middle - camera).reshape(-1, 3)
+    reach = length(spread) if own else np.tile(length(spread), P)
+    near = _near(solids, boxes, eye, ray, reach)  # [P · F, B]
+    wall = solids.wall[boxes]
+    if hidden.shape[1] and (wall >= 0).any():
+        gone = np.where(wall >= 0, hidden[:, np.maximum(wall, 0)], False)
+        near &= ~np.repeat(gone, F, axis=0)
+    n, b = np.divmod(np.flatnonzero(near), len(boxes))
+    at = n if own else n % F
+    meets = _meets(solids, boxes[b], eye[n], ray[n], spread[at])
+    n, b, at = n[meets], b[meets], at[meets]
+    m, k = np.nonzero(_cut(solids, boxes[b], eye[n], points[at]))
     seen = np.ones((P * F, K), bool)
-    m, k = np.nonzero(blocked)
-    seen[p[m] * F + f[m], k] = False
+    seen[n[m], k] = False
     return seen.reshape(P, F, K)
 
 
-def _near(solids: Solids, boxes: NDArray[np.int64], camera: Array, points: Array) -> Bools:
-    """Boxes whose bounding sphere comes close to the line from camera to the middle of the points."""
-    middle = points.mean(axis=-2)
-    spread = length(points - middle[..., None, :]).max(axis=-1)
-    ray = (middle - camera).astype(np.float32)
-    square = np.maximum(np.einsum("pfk,pfk->pf", ray, ray), 1e-9)
-    centre = solids.centre[boxes].astype(np.float32)
-    eye = camera.astype(np.float32)
-    along = np.matmul(ray, centre.T) - np.einsum("pfk,pfk->pf", ray, eye)[..., None]
-    t = np.clip(along / square[..., None], 0.0, 1.0)
+def _between(solids: Solids, eye: Array, points: Array, ignore: int | None) -> NDArray[np.int64]:
+    """Boxes that reach into the space around all cameras [N, 3] and points [M, K, 3], some object's aside."""
+    if not len(solids.centre) or not len(eye):
+        return np.zeros(0, np.int64)
+    low = np.minimum(eye.min(axis=0), points.min(axis=(0, 1)))
+    high = np.maximum(eye.max(axis=0), points.max(axis=(0, 1)))
+    half = solids.half.copy()
+    half[:, :2] = length(solids.half[:, :2])[:, None]
+    inside = ((solids.centre + half > low) & (solids.centre - half < high)).all(axis=1)
+    if ignore is not None:
+        inside &= solids.object != ignore
+    return np.flatnonzero(inside)
+
+
+def _near(solids: Solids, boxes: NDArray[np.int64], eye: Array, ray: Array, spread: Array) -> Bools:
+    """[N, B]: boxes whose bounding sphere comes within ``spread`` [N] of the lines from ``eye`` [N, 3] along
+    ``ray`` [N, 3]; axis by axis, in single precision."""
+    start, along, centre = (a.astype(np.float32) for a in (eye, ray, solids.centre[boxes]))
+    gaps = [centre[:, k] - start[:, k, None] for k in range(3)]
+    t = np.zeros(gaps[0].shape, np.float32)
+    for k, gap in enumerate(gaps):
+        t += gap * along[:, k, None]
+    t /= np.maximum((along * along).sum(axis=1), 1e-9)[:, None]
+    np.clip(t, 0.0, 1.0, out=t)
     away = np.zeros(t.shape, np.float32)
-    for k in range(3):
-        away += (centre[:, k] - eye[..., k, None] - t * ray[..., k, None]) ** 2
-    reach = np.linalg.norm(solids.half[boxes], axis=1).astype(np.float32) + spread[..., None].astype(
-        np.float32
-    )
-    return np.asarray(away < reach**2)
+    for k, gap in enumerate(gaps):
+        gap -= t * along[:, k, None]
+        gap *= gap
+        away += gap
+    reach = length(solids.half[boxes]) + spread[:, None]
+    return np.asarray(away < (reach * reach).astype(np.float32))
 
 
 def _bounds(points: Array) -> tuple[Array, Array]:
@@ -140,12 +155,12 @@ def _bounds(points: Array) -> tuple[Array, Array]:
     return middle, np.stack([across, tall], axis=-1)
 
 
-def _meets(solids: Solids, box: NDArray[np.int64], camera: Array, middle: Array, spread: Array) -> Bools:
-    """Whether the line from camera m to the middle of its points meets box m grown by their spread: only
-    then one of its lines may cut the box. [M, 3], [M, 3], [M, 2] -> [M]."""
+def _meets(solids: Solids, box: NDArray[np.int64], camera: Array, ray: Array, spread: Array) -> Bools:
+    """Whether the line from camera m along its ray, to the middle of its points, meets box m grown by their
+    spread: only then one of its lines may cut the box. [M, 3], [M, 3], [M, 2] -> [M]."""
     c, s = np.cos(solids.yaw)[box], np.sin(solids.yaw)[box]
     half = solids.half[box] + spread[:, (0, 0, 1)]
-    start, ray = camera - solids.centre[box], middle - camera
+    start = camera - solids.centre[box]
     enter, leave = np.zeros(len(box)), np.ones(len(box))
     for axis in range(3):
         if axis == 2:

@@ -21,7 +21,7 @@ from ..cinema import rig_cinema, rig_paper
 from ..cinema.measures import Measured, Takes, measure, samples
 from ..cinema.score import geometry_scores
 from ..cinema.sizes import Size, size_of
-from ..cinema.space import nearby, stage_of
+from ..cinema.space import Stage, nearby, stage_of
 from ..cinema.subject import Subject, person, place, thing
 from ..cinema.track import CameraTrack
 from ..lang.ir import Shot, Target
@@ -32,6 +32,8 @@ from .shooting import Shooting, shoot
 from .types import STILL, CameraProposal, ProposalGrid, StoryProposal
 
 _ROUNDS = 8
+_HOPE = 0.8  # of the share that was good so far: what is counted on in the next round
+_MOST = 10  # candidates in one round, for each that is wanted
 _FEW = 8  # with fewer takes than this, ones that only look less well are let back in
 _MARGIN = 0.22  # radius of a person in somebody else's way, metres
 
@@ -75,16 +77,18 @@ class _Batch:
 def propose_cameras(shot: Shot, stories: Sequence[StoryProposal], filming: Filming) -> ProposalGrid:
     """S · C proposals of a shot: ``shot.proposals`` of them where free space allows."""
     subjects = [subject_of(shot, story, filming) for story in stories]
+    stages = [stage_of(filming.world, subject.position[[0, -1]]) for subject in subjects]
     name = subjects[0].name if subjects and subjects[0].kind == "person" else None
     batches: list[_Batch] = []
     rejected: Counter[str] = Counter()
     considered, good, wanted = 0, 0, shot.proposals
     for number in range(_ROUNDS):
-        share = max(0.9 * good / considered, 0.05) if considered else 0.75
-        count = int(np.clip((wanted - good) / share, 16, 6 * wanted))
+        # a few more than are wanted: another round costs more than they do
+        share = max(_HOPE * good / considered, 0.05) if considered else 0.75
+        count = int(np.clip((wanted - good) / share, 16, _MOST * wanted))
         rng = generator(filming.seed, shot.id, f"cameras {number}")
         considered += count
-        for batch in _consider(shot, stories, subjects, filming, count, rng, rejected):
+        for batch in _consider(shot, stories, subjects, stages, filming, count, rng, rejected):
             batches.append(batch)
             good += int((batch.reason < 0).sum())
             rejected.update(REASONS[k] for k in batch.reason[batch.reason >= 0])
@@ -154,6 +158,7 @@ def _consider(
     shot: Shot,
     stories: Sequence[StoryProposal],
     subjects: Sequence[Subject],
+    stages: Sequence[Stage],
     filming: Filming,
     count: int,
     rng: np.random.Generator,
@@ -168,10 +173,9 @@ def _consider(
             continue
         story = stories[s]
         shooting = shoot(shot, subject, sample, rows, filming.rig, filming.sensor, filming.fps)
-        stage = stage_of(filming.world, subject.position[[0, -1]])
         solids, at = filming.world.solids, samples(subject.frames)
         near = nearby(solids, shooting.track.position[:, at])
-        early = no_room(shooting, near, solids, stage, at)
+        early = no_room(shooting, near, solids, stages[s], at)
         rejected.update(REASONS[k] for k in early[early >= 0])
         kept = np.flatnonzero(early < 0)
         if not len(kept):

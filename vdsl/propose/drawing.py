@@ -50,12 +50,8 @@ def draw(shot: Shot, stories: int, count: int, rng: np.random.Generator) -> Samp
     """``count`` candidates for a shot over so many story proposals."""
 
     def pick(n: int) -> NDArray[np.int64]:
-        blocks = math.ceil(count / n)
-        return (
-            np.concatenate([rng.permutation(n) for _ in range(blocks)])[:count]
-            if n > 1
-            else np.zeros(count, int)
-        )
+        blocks = np.tile(np.arange(n), (math.ceil(count / n), 1))
+        return np.asarray(rng.permuted(blocks, axis=1).ravel()[:count]) if n > 1 else np.zeros(count, int)
 
     def spread() -> NDArray[np.float64]:
         return np.asarray((rng.permutation(count) + rng.random(count)) / count)

@@ -8,6 +8,7 @@ every obstacle, and that the same question always has the same answer.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -309,11 +310,12 @@ def _pull(cost: NDArray[np.float64], cells: NDArray[np.int64]) -> NDArray[np.int
 
 def _line_cost(cost: NDArray[np.float64], a: NDArray[np.int64], b: NDArray[np.int64]) -> float | None:
     """Cost of the straight line between two cells, None when it leaves walkable ground."""
-    length = float(np.linalg.norm(b - a))
-    t = np.linspace(0.0, 1.0, int(np.ceil(length * 2)) + 1)
-    line = np.rint(a + t[:, None] * (b - a)).astype(np.int64)
-    price = cost[line[:, 0], line[:, 1]]
-    return None if (price < 0).any() else float(price.mean() * length)
+    (x, y), (dx, dy) = a.tolist(), (b - a).tolist()
+    length = math.hypot(dx, dy)
+    steps = math.ceil(length * 2)
+    t = np.arange(steps + 1) / max(steps, 1)
+    price = cost[np.rint(x + t * dx).astype(np.int64), np.rint(y + t * dy).astype(np.int64)]
+    return None if price.min() < 0 else float(price.sum()) / (steps + 1) * length
 
 
 def _cut_corners(points: NDArray[np.float64]) -> NDArray[np.float64]:

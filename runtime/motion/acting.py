@@ -17,10 +17,11 @@ from .contacts import Contacts, HandTracks
 from .curves import below, delayed, plateau, ramp, smooth, wander
 from .face import GazePull, Look, blinks, look, speech
 from .feet import ankle_positions
-from .figure import MIRROR, ArmPose, Figure, HandGoals, palm_offset, palm_rotation
+from .figure import ArmPose, Figure, HandGoals
 from .gait import level_thigh, sit_clearance
+from .hands import MIRROR
 from .plan import Plan
-from .rotations import norm, turned, wrap
+from .rotations import norm, turned, unwrapped, wrap
 
 Array = NDArray[np.float64]
 
@@ -202,7 +203,7 @@ class Performer:
         return np.asarray(standing + s * (seated - standing) + above)
 
     def _set_legs(self, ankle: Array, toes: Array, bind: Array) -> None:
-        yaw = np.unwrap(self.feet.place[..., 2], axis=1)
+        yaw = unwrapped(self.feet.place[..., 2])
         spread = 0.10 + 0.12 * self.sitting + self.channels["knees.spread"]
         hanging = 0.35 * np.clip(self._dangle() / 0.1, 0, 1) * self.sitting
         pitch = self.feet.pitch + self.channels.pair("foot", "pitch") + hanging
@@ -288,8 +289,8 @@ class Performer:
 
     def _shortage(self, tracks: HandTracks) -> Array:
         """[2, T]: how far each hand's place is out of the arm's reach, by the reach's weight."""
-        rotation = palm_rotation(self.yaw, tracks.inward, tracks.pitch, tracks.tilt, self.skeleton)
-        wrist = tracks.position(self.figure) - turned(rotation, palm_offset(self.skeleton)[:, None])
+        rotation = self.figure.hands.facing(self.yaw, tracks.inward, tracks.pitch, tracks.tilt)
+        wrist = tracks.position(self.figure) - turned(rotation, self.figure.hands.offset)
         d = norm(wrist - self.figure.shoulders())
         return np.asarray(np.maximum(d - 0.925 * self.figure.arm_length, 0.0) * tracks.weight)
 
@@ -297,7 +298,7 @@ class Performer:
         """Poses arms and hands; returns the palms [2, T, 3]."""
         tracks = contacts.tracks
         pose = self.arm_pose(tracks.carry)
-        rotation = palm_rotation(self.yaw, tracks.inward, tracks.pitch, tracks.tilt, self.skeleton)
+        rotation = self.figure.hands.facing(self.yaw, tracks.inward, tracks.pitch, tracks.tilt)
         goals = HandGoals(tracks.position(self.figure), tracks.weight, rotation, tracks.turning)
         palms = self.figure.arms(pose, goals, self.yaw)
         self.goal_rotation = rotation
@@ -326,7 +327,7 @@ def relative_gaze(eye: Array, yaw: Array, point: Array) -> tuple[Array, Array]:
     """Turn to the left and down [T] from ``eye`` [T, 3] to ``point`` [(T,) 3], against heading ``yaw``."""
     d = point - eye
     turn = wrap(np.arctan2(d[..., 1], d[..., 0]) - yaw)
-    return np.unwrap(turn), np.arctan2(-d[..., 2], np.hypot(d[..., 0], d[..., 1]))
+    return unwrapped(turn), np.arctan2(-d[..., 2], np.hypot(d[..., 0], d[..., 1]))
 
 
 def fade(t: Array, start: float, end: float, lead: float = 0.35) -> Array:

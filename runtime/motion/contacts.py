@@ -95,7 +95,7 @@ class Held:
 
 @dataclass(frozen=True, eq=False)
 class Layer:
-    """A hand's wish: weight [T]; the place is a point [T, 3] or a body place; angles as in palm_rotation.
+    """A hand's wish: weight [T]; the place is a point [T, 3] or a body place; angles as in ``Hands.facing``.
 
     led: the thing of which a part, not the palm, is to be there: its ``rim``, ``spout`` or ``foot``
     """

@@ -14,9 +14,9 @@ from numpy.typing import NDArray
 
 from runtime.body.skeleton import JOINT, JOINTS, PARENTS, Skeleton
 
+from .hands import MIRROR, Hands
 from .ik import bind_frame, bone_rotation, two_bone
 from .rotations import (
-    across,
     blend,
     cross,
     dot,
@@ -55,8 +55,6 @@ _KNUCKLES, _MIDDLES, _INDEXTIPS = (
     _joints("indextip"),
 )
 _FACE = [JOINT["jaw"], *_joints("eye", "lid", "brow", "mouth")]
-#: +1 left, -1 right, to be multiplied with [2, T] arrays.
-MIRROR = np.array([1.0, -1.0])[:, None]
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,42 +80,6 @@ class HandGoals:
     turning: Array
 
 
-def palm_rotation(heading: Array, inward: Array, pitch: Array, tilt: Array, skeleton: Skeleton) -> Array:
-    """World rotation of both hands [2, T, 3, 3] with thumbs up, palms facing each other.
-
-    heading [T]; inward [2, T]: how far the fingers turn towards the middle; pitch [2, T]: fingers up;
-    tilt [2, T]: the thumb's side tips towards the palm
-    """
-    yaw = heading[None] - MIRROR * inward
-    basis = np.stack([_canonical(skeleton, s) for s in SIDES])
-    return rot_zyx(yaw, -pitch, MIRROR * tilt) @ basis[:, None]
-
-
-def _hand_axes(skeleton: Skeleton, side: str) -> tuple[Array, Array, Array]:
-    """In the bind pose: along the fingers, out of the palm, to the thumb."""
-    fingers = unit(skeleton.bind[JOINT[f"fingers_{side}"]] - skeleton.bind[JOINT[f"hand_{side}"]])
-    thumb = across(np.array([1.0, 0.0, 0.0]), fingers)
-    palm = cross(thumb, fingers) if side == "r" else cross(fingers, thumb)
-    return fingers, palm, thumb
-
-
-def _canonical(skeleton: Skeleton, side: str) -> Array:
-    fingers, palm, thumb = _hand_axes(skeleton, side)
-    medial = np.array([0.0, -1.0 if side == "l" else 1.0, 0.0])
-    world = np.stack([np.array([1.0, 0, 0]), medial, np.array([0, 0, 1.0])], axis=1)
-    return world @ np.stack([fingers, palm, thumb])
-
-
-def palm_offset(skeleton: Skeleton) -> Array:
-    """[2, 3]: from the wrist to the middle of the grip, in each hand's bind frame."""
-    out = np.zeros((2, 3))
-    for k, s in enumerate(SIDES):
-        fingers, palm, thumb = _hand_axes(skeleton, s)
-        length = np.linalg.norm(skeleton.bind[JOINT[f"fingers_{s}"]] - skeleton.bind[JOINT[f"hand_{s}"]])
-        out[k] = fingers * length * 0.92 + palm * skeleton.height * 0.021 + thumb * 0.004
-    return out
-
-
 class Figure:
     """One person's joints over T frames."""
 
@@ -135,13 +97,12 @@ class Figure:
         self._shin_frames = self._bind_frames(_SHINS, _FEET, _BACK)
         self._upperarm_frames = self._bind_frames(_UPPERARMS, _FOREARMS, _FRONT)
         self._forearm_frames = self._bind_frames(_FOREARMS, _HANDS, _FRONT)
-        self._palm_offset = palm_offset(skeleton)[:, None]
+        self.hands = Hands(skeleton)
 
     def _bind_frames(self, bones: list[int], ends: list[int], side: Array) -> Array:
         """[2, 1, 3, 3]: bind frames of bones of both sides."""
         bind = self.skeleton.bind
-        frames = [bind_frame(bind[e] - bind[b], side) for b, e in zip(bones, ends, strict=True)]
-        return np.stack(frames)[:, None]
+        return bind_frame(bind[ends] - bind[bones], side)[:, None]
 
     def turn(self, joint: str, local: Array) -> None:
         """Sets a joint by its local rotation [T, 3, 3]; its parent has to be set."""
@@ -243,8 +204,8 @@ class Figure:
         natural = turned(heading[None], natural)
         w = goals.weight[..., None]
         pole = unit((1 - w) * pole_fk + w * natural)
-        fk_relative = self._wrist_angles(pose)
-        offset, axis = self._palm_offset, self._forearm_frames[:, :, 0]
+        fk_relative = self.hands.bent(pose.turn, pose.side, pose.wrist)
+        offset, axis = self.hands.offset, self._forearm_frames[:, :, 0]
         goal_wrist = goals.position - turned(goals.rotation, offset)
         arc = turned(heading[None], np.stack([[[0.75, m * 0.45, 0.0]] for m in (1.0, -1.0)]))
         for _ in range(3 if goals.weight.any() else 1):
@@ -262,15 +223,6 @@ class Figure:
         self._set(_HANDS, limb.end, hand)
         palm: Array = limb.end + turned(hand, offset)
         return palm
-
-    def _wrist_angles(self, pose: ArmPose) -> Array:
-        """Rotation of each hand against its forearm [2, T, 3, 3] in the bind frame."""
-        axes = np.array([_hand_axes(self.skeleton, s) for s in SIDES])
-        fingers, palm, thumb = axes.swapaxes(0, 1)[:, :, None]  # [2, 1, 3] each
-        turn = rotation(fingers * (MIRROR * pose.turn)[..., None])
-        side = rotation(cross(fingers, thumb) * pose.side[..., None])
-        bend = rotation(cross(fingers, palm) * pose.wrist[..., None])
-        return turn @ side @ bend
 
     def fingers(self, curl: Array, point: Array, thumb: Array) -> None:
         """Fingers [2, T]: curl 0 straight .. 1 fist; point: the index stays straight; thumb curls 0..1."""

@@ -56,11 +56,11 @@ def two_bone(
 
 
 def bind_frame(bind: Array, bind_side: Array) -> Array:
-    """[3, 3], what :func:`bone_rotation` needs of the bind pose: the bone's direction [3], and where it
-    swings to on flexing [3]."""
+    """[..., 3, 3], what :func:`bone_rotation` needs of the bind pose: the bone's direction [..., 3], and
+    where it swings to on flexing [3]."""
     b = unit(bind)
     s = across(bind_side, b)
-    return np.stack([b, s, cross(b, s)])
+    return np.stack([b, s, cross(b, s)], axis=-2)
 
 
 def bone_rotation(direction: Array, hinge: Array, frame: Array) -> Array:

@@ -44,6 +44,8 @@ def track_prop(
     a fraction of a second in which the hand stands still at it.
     """
     frames = len(t)
+    if not holds:
+        return np.repeat(prop.world_from_object[None], frames, axis=0)
     position = np.broadcast_to(prop.world_from_object[:3, 3], (frames, 3)).copy()
     rotation = np.broadcast_to(prop.world_from_object[:3, :3], (frames, 3, 3)).copy()
     grip = np.asarray(prop.grip, dtype=np.float64)

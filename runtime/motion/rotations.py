@@ -146,7 +146,7 @@ def steady(vector: Array) -> Array:
     follow = dot(axis[..., 1:, :], axis[..., :-1, :])
     sign = np.ones_like(angle)
     sign[..., 1:] = np.cumprod(np.where(follow < 0, -1.0, 1.0), axis=-1)
-    return axis * (sign * np.unwrap(angle * sign, axis=-1))[..., None]
+    return axis * (sign * unwrapped(angle * sign))[..., None]
 
 
 def blend(start: Array, end: Array, share: Array) -> Array:
@@ -193,6 +193,12 @@ def unit(vector: Array) -> Array:
 def across(vector: Array, axis: Array) -> Array:
     """The part of ``vector`` at right angles to the unit ``axis``, to length 1."""
     return unit(vector - dot(vector, axis)[..., None] * axis)
+
+
+def unwrapped(angle: Array) -> Array:
+    """Angles [..., T] without jumps of a full turn; most have none, and finding that out is quick."""
+    jumps = angle.shape[-1] > 1 and np.abs(angle[..., 1:] - angle[..., :-1]).max(initial=0.0) > np.pi
+    return np.unwrap(angle, axis=-1) if jumps else angle
 
 
 def wrap(angle: Array | float) -> Array:

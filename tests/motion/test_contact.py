@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from runtime.body.skeleton import JOINT
-from runtime.motion.figure import palm_offset
+from runtime.motion.hands import palm_offset
 from runtime.motion.perform import perform
 from runtime.motion.types import PropState, SceneMotion, Task
 

@@ -90,7 +90,8 @@ class Measured:
 
 def samples(frames: int) -> NDArray[np.int64]:
     """Indices of the frames looked at."""
-    return np.unique(np.linspace(0, frames - 1, min(frames, SAMPLES)).round().astype(np.int64))
+    count = min(frames, SAMPLES)
+    return np.asarray((np.arange(count) * ((frames - 1) / max(count - 1, 1))).round().astype(np.int64))
 
 
 def measure(takes: Takes, subject: Subject, world: World, fps: float) -> Measured:

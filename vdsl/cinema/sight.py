@@ -37,15 +37,15 @@ def hidden_walls(world: World, camera: Array, subject: Array, corners: Array) ->
     targets = np.concatenate([heart, corners], axis=2)
 
     def side(points: Array) -> Array:
-        d = points[..., None, :] - low
-        return along[:, 0] * d[..., 1] - along[:, 1] * d[..., 0]
+        x, y = points[..., 0, None], points[..., 1, None]
+        return along[:, 0] * (y - low[:, 1]) - along[:, 1] * (x - low[:, 0])
 
     eye_side, target_side = side(eye), side(targets)  # [P, F, 1, W], [P, F, C + 1, W]
     apart = (eye_side[:, :, 0] > 0) != (target_side[:, :, 0] > 0)
     ray = targets - eye
-    to_low, to_high = low - eye[..., None, :], high - eye[..., None, :]
-    a = ray[..., None, 0] * to_low[..., 1] - ray[..., None, 1] * to_low[..., 0]
-    b = ray[..., None, 0] * to_high[..., 1] - ray[..., None, 1] * to_high[..., 0]
+    x, y, dx, dy = eye[..., 0, None], eye[..., 1, None], ray[..., 0, None], ray[..., 1, None]
+    a = dx * (low[:, 1] - y) - dy * (low[:, 0] - x)
+    b = dx * (high[:, 1] - y) - dy * (high[:, 0] - x)
     crossing = ((a > 0) != (b > 0)) & ((eye_side > 0) != (target_side > 0))
     return np.asarray((crossing.any(axis=2) & apart).any(axis=1))
 
@@ -59,11 +59,12 @@ def backdrop_gaps(world: World, hidden: Bools, camera: Array, subject: Array, ra
         return np.zeros(len(camera))
     low = np.array([w.low for w in world.walls])
     along = np.array([w.high for w in world.walls]) - low
-    d = low - camera[:, :, None, None, :2]
-    denominator = rays[..., None, 0] * along[:, 1] - rays[..., None, 1] * along[:, 0]
+    x, y = low[:, 0] - camera[:, :, None, None, 0], low[:, 1] - camera[:, :, None, None, 1]
+    dx, dy = rays[..., 0, None], rays[..., 1, None]
+    denominator = dx * along[:, 1] - dy * along[:, 0]
     safe = np.where(np.abs(denominator) < 1e-9, 1e-9, denominator)
-    t = (d[..., 0] * along[:, 1] - d[..., 1] * along[:, 0]) / safe
-    s = (d[..., 0] * rays[..., None, 1] - d[..., 1] * rays[..., None, 0]) / safe
+    t = (x * along[:, 1] - y * along[:, 0]) / safe
+    s = (x * dy - y * dx) / safe
     reach = length(camera[..., :2] - subject[None, :, :2])[:, :, None, None]
     behind = (t > reach) & (s >= 0) & (s <= 1) & hidden[:, None, None, :]
     return np.asarray(behind.any(axis=3).mean(axis=(1, 2)))

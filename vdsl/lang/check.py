@@ -319,8 +319,26 @@ class _Checker:
                 if seats
                 else "this scene has no seats",
             )
+        elif at is not None and posture == "sitting" and stage.scope is not None:
+            self._seat_left(at, line, stage.scope, stage.placements)
         free = Target("free", (), "", line.span)
         stage.placements[name] = Placement(name, at or free, facing, posture, line.span)
+
+    def _seat_left(
+        self, at: Target, line: ast.PlacementLine, scope: Scope, placed: dict[str, Placement]
+    ) -> None:
+        sits = next(scope.sitting(at, placed.values()), None)
+        if sits is None or scope.has_seat_left(at, placed.values()):
+            return
+        place = line.at or line.character
+        others = [s for s in dict.fromkeys(scope.seats()) if s != place.text]
+        self.report.error(
+            "VDS069",
+            place.span,
+            label=f"{sits.character} sits here already",
+            help=f"other seats: {listing(others, last='and')}" if others else "this scene has no other seat",
+            notes=[(sits.span, "placed here")],
+        )
 
     def _someone_or_something(self, name: ast.Name, stage: _Stage) -> Target | None:
         """What a camera is on, or someone faces: a character of this scene, or something in it."""

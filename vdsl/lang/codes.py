@@ -402,8 +402,8 @@ CODES: dict[str, Code] = {
         "(anna walk counter)",
     ),
     "VDS069": Code(
-        "nothing to sit on",
-        "One sits on what has a seat: a chair, a sofa, a bench, or a spot called seat.",
+        "no seat here",
+        "One sits on what has a seat, one person on each: a chair, a sofa, a bench, or a spot called seat.",
         "carl at counter sitting",
         "carl at chair_1 sitting",
     ),

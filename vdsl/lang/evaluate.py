@@ -138,7 +138,7 @@ def evaluate_arguments(
                 help="separate arguments with commas",
             )
             continue
-        got = evaluate(argument.values[0], env, spec.kind, report)
+        got = _argument(argument.values[0], spec, env, report)
         if got is None:
             continue
         if spec.choices is not None and isinstance(got, str) and got not in spec.choices:
@@ -146,6 +146,26 @@ def evaluate_arguments(
             continue
         found[name] = got
     return found
+
+
+def _argument(value: ast.Value, spec: ParameterSpec, env: Env, report: Report) -> float | str | None:
+    """An argument's value; where a feature is a word or a number, whichever is written."""
+    if spec.numbers is None:
+        return evaluate(value, env, spec.kind, report)
+    if isinstance(value, ast.Name) and isinstance(env.get(value.text, ""), str):
+        return evaluate(value, env, "word", report)
+    got = evaluate(value, env, "number", report)
+    low, high = spec.numbers
+    if isinstance(got, float) and not low <= got <= high:
+        words = f", or {listing(spec.choices)}" if spec.choices else ""
+        report.error(
+            "VDS161",
+            value.span,
+            label=f"`{spec.name}` does not go that far",
+            help=f"from {low:g} to {high:g}{words}",
+        )
+        return None
+    return got
 
 
 def read_parameters(parameters: Iterable[ast.Parameter], report: Report) -> tuple[ParameterSpec, ...]:
@@ -182,7 +202,8 @@ def parameter_env(
     env: dict[str, Bound] = {}
     for spec in specs:
         value = (arguments or {}).get(spec.name, spec.default)
-        env[spec.name] = value if isinstance(value, str) else Quantity(float(value), spec.kind)
+        kind = "number" if spec.kind == "word" else spec.kind  # a number in a word's place
+        env[spec.name] = value if isinstance(value, str) else Quantity(float(value), kind)
     return env
 
 

@@ -7,14 +7,14 @@ depth are ambiguous. Names of nodes and of spots the set gives come before the s
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 from .ast import Name
 from .catalog import CatalogLike
 from .definitions.types import SetNode
 from .diagnostics import Report, listing, nearest
-from .ir import Target
+from .ir import Placement, Target
 
 ROOMS = ("set", "room", "area")
 
@@ -141,6 +141,25 @@ class Scope:
             return target.path[-1].startswith("seat")
         node = self.node_of(target)
         return node is not None and any(s.startswith("seat") for s in (*node.spots, *self.prop_spots(node)))
+
+    def sitting(self, target: Target, placed: Iterable[Placement]) -> Iterator[Placement]:
+        """Those of the placed who sit at the thing a target is, or is a spot of."""
+        node = self.node_of(target)
+        for each in placed:
+            somewhere = each.posture == "sitting" and each.at.kind not in ("free", "character")
+            if somewhere and self.node_of(each.at) is node:
+                yield each
+
+    def has_seat_left(self, target: Target, placed: Iterable[Placement]) -> bool:
+        """Whether somebody more can sit there; True also where only the built set can tell."""
+        node = self.node_of(target)
+        prop = self._catalog.get("prop", node.prop) if node and node.prop else None
+        body = getattr(prop, "body", ())
+        if node is None or any(e.head.text == "spot" for each in body if each.body for e in each.body):
+            return True
+        spots = [e.values[0] for e in body if e.head.text == "spot" and e.values]
+        names = [*node.spots, *(s.text for s in spots if isinstance(s, Name))]
+        return sum(1 for _ in self.sitting(target, placed)) < sum(n.startswith("seat") for n in names)
 
     def seats(self) -> tuple[str, ...]:
         """Names of what one can sit on, in the scene."""

@@ -60,6 +60,8 @@ def read_cast(definition: ast.Definition, report: Report) -> CastDef | None:
     parameters = []
     for spec in written:
         checked = replace(spec, choices=FEATURES.get(spec.name)) if spec.kind == "word" else spec
+        if spec.name in NUMBERS and spec.name != "height":
+            checked = replace(spec, choices=FEATURES[spec.name], numbers=NUMBERS[spec.name])
         span = defaults.get(spec.name, definition.span)
         if isinstance(spec.default, str):
             if checked.choices is not None and spec.default not in checked.choices:

@@ -17,12 +17,14 @@ class ParameterSpec:
 
     kind: length (metres), angle (radians), number, seconds or word
     choices: the words allowed, None for any (colours are words checked by whoever reads them)
+    numbers: lowest and highest bare number that may stand for a word or a number; None: only ``kind`` will do
     """
 
     name: str
     kind: str
     default: float | str
     choices: tuple[str, ...] | None = None
+    numbers: tuple[float, float] | None = None
 
 
 @dataclass(frozen=True)

@@ -13,6 +13,7 @@ import typer
 from .bench import bench
 from .check import check
 from .compile import compile_command
+from .ends import ends_told
 from .explain import explain
 from .train import train
 
@@ -48,5 +49,6 @@ def _common(
 
 
 def main() -> None:
-    """The ``vdsc`` command."""
-    app()
+    """The ``vdsc`` command: :data:`app`, ending with a clear code however it is stopped."""
+    with ends_told():
+        app()

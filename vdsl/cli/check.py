@@ -63,7 +63,7 @@ def check_or_exit(
     quiet_warnings: print nothing where there are only warnings
     """
     if not path.exists():
-        siblings = [p.name for p in path.parent.glob("*.vds")] if path.parent.is_dir() else []
+        siblings = [p.name for p in path.parent.glob("*.vds") if p.exists()] if path.parent.is_dir() else []
         meant = nearest(path.name, siblings)
         hint = f" Did you mean {path.parent / meant}?" if meant else ""
         stop(f"there is no file {path}.{hint}", USAGE)

@@ -9,7 +9,7 @@ from typing import Annotated
 import typer
 
 from ..lang import Settings
-from .check import Format, check_or_exit
+from .check import USAGE, Format, check_or_exit, stop
 
 
 class Device(str, Enum):
@@ -79,6 +79,8 @@ def compile_command(
     )
     # The cheap check first: a script with errors is told so before anything heavy is loaded.
     check_or_exit(file, format.value, settings, quiet_warnings=True)
+    if not file.is_file():  # a pipe is empty by now, and the check was only the first reading
+        stop(f"{file} is no ordinary file; save the storyboard first", USAGE)
     _run(file, out, settings, rank.value, weights, device.value, burn_in, format.value)
 
 
@@ -103,10 +105,9 @@ def _run(
 
     options = Options(settings, device, rank, weights, burn_in)
     console = Console(stderr=True)
-    with failures_told(file, format):
-        with Bars(console) as bars:
-            result = compile_file(file, out, options, bars)
-        print_outcome(result, format, file)
+    with failures_told(file, format), Bars(console) as bars:
+        result = compile_file(file, out, options, bars)
+    print_outcome(result, format, file)
 
 
 def _size(text: str | None) -> tuple[int, int] | None:

@@ -32,6 +32,12 @@ def failures_told(file: Path, format: str = "text") -> Iterator[None]:
         stop(str(error), MACHINE)
     except MemoryError:
         stop("not enough memory; try fewer --proposals or a smaller --size", MACHINE)
+    except UnicodeEncodeError as error:
+        stop(
+            f"files cannot be named {error.object!r} in this locale ({error.encoding}); "
+            "use one with UTF-8, or set PYTHONUTF8=1",
+            MACHINE,
+        )
     except OSError as error:
         stop(_about(error), MACHINE)
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from pathlib import Path
 
 from rich.console import Console
@@ -9,7 +10,7 @@ from rich.table import Table
 
 from ..emit.words import camera_words
 from ..pipeline.compile import Result
-from .show import as_json, print_report, printable
+from .show import as_json, count, print_report, printable, write_line
 
 
 def print_outcome(result: Result, format: str, file: Path) -> None:
@@ -25,11 +26,11 @@ def print_outcome(result: Result, format: str, file: Path) -> None:
     num, den = result.build.storyboard.fps
     takes = sum(len(s.takes) for s in shots)
     film = f"{frames * den / num:.1f} s of film in {result.report.seconds:.0f} s"
-    made = f"{len(shots)} shots, {takes} takes, {film}"
-    console.print(printable(made), highlight=False)
+    made = f"{count(len(shots), 'shot')}, {count(takes, 'take')}, {film}"
+    write_line(made, sys.stdout)
     for name in ("index.html", "animatic.mp4", "sheet.png"):
         if (result.folder / name).exists():
-            console.print(printable(str(result.folder / name)), highlight=False, soft_wrap=True)
+            write_line(printable(str(result.folder / name)), sys.stdout)
 
 
 def _table(result: Result) -> Table:

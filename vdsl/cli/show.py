@@ -100,13 +100,14 @@ def as_text(diagnostics: Iterable[Diagnostic], colour: bool = False) -> str:
         parts.append(f"… and {len(found) - MOST_PRINTED:,} more; `--format json` has them all")
     errors = sum(d.severity == "error" for d in found)
     warnings = len(found) - errors
-    counts = [_count(n, word) for n, word in ((errors, "error"), (warnings, "warning")) if n]
+    counts = [count(n, word) for n, word in ((errors, "error"), (warnings, "warning")) if n]
     more = f"; `vdsc explain {found[0].code}` says more" if errors else ""
     parts.append(paint("error" if errors else "warning", " and ".join(counts)) + more)
     return "\n\n".join(parts)
 
 
-def _count(number: int, word: str) -> str:
+def count(number: int, word: str) -> str:
+    """``1 shot``, ``2 shots``"""
     return f"{number} {word}" if number == 1 else f"{number} {word}s"
 
 

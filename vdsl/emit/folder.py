@@ -7,10 +7,12 @@ something else than a build is never replaced.
 from __future__ import annotations
 
 import contextlib
+import glob
 import json
 import os
 import shutil
 import tempfile
+import time
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -18,6 +20,8 @@ from pathlib import Path
 #: writer's own and are carried over to the new one.
 OWN = ("index.html", "animatic.mp4", "storyboard.json", "report.json", "shots")
 _STORYBOARD = "storyboard.json"
+#: Seconds without a change after which a half-made build is nobody's.
+_LEFTOVER_AGE = 6 * 3600
 
 
 class BuildFolderError(OSError):
@@ -32,12 +36,17 @@ def staged_build(target: str | Path) -> Iterator[Path]:
     is a folder of something else.
     """
     place = Path(os.path.realpath(target))
-    _recover(place)
-    _refuse_foreign(place)
+    if not place.name:
+        raise BuildFolderError(f"cannot build into {place}: name a folder in it")
     try:
+        _recover(place)
+        _refuse_foreign(place)
         place.parent.mkdir(parents=True, exist_ok=True)
+        _clear_leftovers(place)
         stage = Path(tempfile.mkdtemp(prefix=f".{place.name}.new-", dir=place.parent))
         stage.chmod(0o777 & ~_umask())
+    except BuildFolderError:
+        raise
     except OSError as error:
         raise _failure(f"cannot write to {place.parent}", error) from error
     try:
@@ -119,6 +128,15 @@ def _recover(place: Path) -> None:
     old = _old_name(place)
     if old.is_dir() and not place.exists():
         os.rename(old, place)
+
+
+def _clear_leftovers(place: Path) -> None:
+    """Remove what runs that were killed outright left half made; younger ones may still be at work."""
+    for stage in place.parent.glob(f".{glob.escape(place.name)}.new-*"):
+        with contextlib.suppress(OSError):
+            newest = max(p.stat().st_mtime for p in (stage, *stage.rglob("*")))
+            if time.time() - newest > _LEFTOVER_AGE:
+                shutil.rmtree(stage, ignore_errors=True)
 
 
 def _old_name(place: Path) -> Path:

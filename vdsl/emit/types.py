@@ -30,7 +30,8 @@ class Subject:
 class TakeMedia:
     """The pictures of a take, already on disk in the build's folder.
 
-    frames: how many the video has; keys: three frames in order, uint8 [h, w, 3], for the contact sheet
+    frames: how many the video has
+    keys: three frames in order, uint8 [h, w, 3], for the contact sheet; none but for the best take
     """
 
     video: Path

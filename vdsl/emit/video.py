@@ -42,7 +42,7 @@ def write_take(
     fps: tuple[int, int],
     strip: BurnIn | None = None,
 ) -> TakeMedia:
-    """Encode a take and its poster.
+    """Encode a take and its poster. Only the best take of a shot keeps keyframes: the sheet shows no other.
 
     frames: ``count`` pictures uint8 [H, W, 3]; strip: what to write on every frame, if anything
     """
@@ -57,7 +57,7 @@ def write_take(
             if writer is None:
                 writer = VideoWriter(video, (picture.shape[1], picture.shape[0]), fps)
             writer.write(picture)
-            if i in wanted:
+            if i in wanted and rank == 1:
                 keys[i] = _reduced(frame)
             if i == wanted[1]:
                 write_poster(poster, picture)
@@ -70,7 +70,7 @@ def write_take(
         if writer is not None:
             writer.discard()
         raise
-    return TakeMedia(video, poster, count, tuple(keys[i] for i in wanted))
+    return TakeMedia(video, poster, count, tuple(keys[i] for i in wanted if i in keys))
 
 
 def read_take(video: Path, poster: Path) -> TakeMedia:

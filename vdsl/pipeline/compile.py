@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import resource
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from time import perf_counter
@@ -39,7 +39,7 @@ from .staging import Stagehand
 
 #: Proposals drawn and judged at a time: bounds memory, and lets progress be seen.
 _JUDGED_AT_ONCE = 16
-_UNITS = {"propose": "proposals", "draw": "frames", "rank": "shots", "film": "frames"}
+_UNITS = {"stage": "lines", "propose": "proposals", "draw": "frames", "rank": "shots", "film": "frames"}
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,8 +81,7 @@ def compile_file(
     with clock.spent("check", 1, quiet=True):
         checked = _with_something_to_film(load_storyboard(path, options.settings))
     with staged_build(folder) as staging:
-        with clock.spent("stage", len(checked.storyboard.scenes), quiet=True):
-            acts = stage_acts(checked)
+        acts = _stage_all(checked, clock)
         judge = _judge(options, clock)
         shots = tuple(_film_all(checked.storyboard, acts, judge, options, staging, clock))
         _warn_of_empty_shots(shots, checked.report)
@@ -92,6 +91,13 @@ def compile_file(
         report = _report(perf_counter() - started, clock, options)
         write_report(staging / "report.json", report)
     return Result(folder, build, checked.report, report)
+
+
+def _stage_all(checked: Checked, clock: StageClock) -> list[Act]:
+    lines = len(checked.storyboard.lines)
+    clock.begin("stage", lines, _UNITS["stage"])
+    with clock.spent("stage", lines, quiet=True):
+        return stage_acts(checked, played=lambda: clock.watcher.advance("stage", 1))
 
 
 def _with_something_to_film(checked: Checked) -> Checked:
@@ -107,10 +113,12 @@ def _with_something_to_film(checked: Checked) -> Checked:
     return checked
 
 
-def stage_acts(checked: Checked, hand: Stagehand | None = None) -> list[Act]:
+def stage_acts(
+    checked: Checked, hand: Stagehand | None = None, played: Callable[[], None] = lambda: None
+) -> list[Act]:
     """Every line in its scene with its opening state. Raises ScriptError for what cannot be played.
 
-    hand: one that has built sets and bodies before
+    hand: one that has built sets and bodies before; played: called after every line
     """
     storyboard, report = checked.storyboard, checked.report
     hand = hand or Stagehand(checked.catalog)
@@ -135,6 +143,7 @@ def stage_acts(checked: Checked, hand: Stagehand | None = None) -> list[Act]:
         for line in lines:
             acts.append(Act(line, staged, filming, state))
             state = advance(state, line, checked.catalog, filming, report)
+            played()
     if report.has_errors:
         raise ScriptError(report)
     order = {id(line): i for i, line in enumerate(storyboard.lines)}

@@ -37,6 +37,7 @@ def page_html(build: Build) -> str:
         statistics=statistics(build),
         length=seconds_words(film_frames(build), board.fps),
         shown=bool(build.shown),
+        poster=next((s["takes"][0]["poster"] for s in document["shots"] if s["takes"]), ""),
     )
 
 

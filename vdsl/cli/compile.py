@@ -41,10 +41,10 @@ def compile_command(
         Path | None, typer.Option("--out", "-o", help="Where to put the build.", show_default="build/NAME")
     ] = None,
     proposals: Annotated[
-        int | None, typer.Option(min=1, max=1000, help="Proposals a shot.", show_default="80")
+        int | None, typer.Option(min=1, max=2000, help="Proposals a shot.", show_default="80")
     ] = None,
     takes: Annotated[
-        int | None, typer.Option(min=1, max=100, help="Takes kept a shot.", show_default="5")
+        int | None, typer.Option(min=1, max=40, help="Takes kept a shot.", show_default="5")
     ] = None,
     seed: Annotated[
         int | None, typer.Option(min=0, help="Another seed, other proposals.", show_default="0")

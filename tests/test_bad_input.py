@@ -121,6 +121,16 @@ def test_what_a_killed_run_left_is_cleared_and_a_running_one_is_not(tmp_path: Pa
     assert sorted(p.name for p in tmp_path.iterdir()) == [".film.new-young", "film"]
 
 
+def test_without_a_home_it_films_all_the_same(tmp_path: Path) -> None:
+    (tmp_path / "story.vds").write_text(STORY)
+    nowhere = {k: v for k, v in os.environ.items() if k not in ("HOME", "XDG_CACHE_HOME")}
+    done = subprocess.run(
+        [*COMMAND, "compile", "story.vds", *SMALL], cwd=tmp_path, env=nowhere, capture_output=True, text=True
+    )
+    assert (done.returncode, done.stderr) == (0, "")
+    assert (tmp_path / "build" / "story" / "animatic.mp4").exists()
+
+
 @pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT])
 def test_asked_to_stop_it_cleans_up_and_leaves_the_last_good_build(tmp_path: Path, number: int) -> None:
     (tmp_path / "story.vds").write_text(STORY)

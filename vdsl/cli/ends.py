@@ -11,7 +11,9 @@ import errno
 import os
 import signal
 import sys
+import tempfile
 from collections.abc import Iterator
+from pathlib import Path
 from types import FrameType
 from typing import NoReturn
 
@@ -24,6 +26,8 @@ _REQUESTS = ("SIGTERM", "SIGHUP")
 @contextlib.contextmanager
 def ends_told() -> Iterator[None]:
     """Requests to stop clean up as Ctrl-C does (exit code 130); output nobody takes is told (3)."""
+    if not os.environ.get("HOME"):  # a service may have none, and Taichi aborts without
+        os.environ["HOME"] = _home()
     for name in _REQUESTS:
         number = getattr(signal, name, None)
         if number is not None and signal.getsignal(number) is signal.SIG_DFL:  # nohup stays nohup
@@ -42,6 +46,13 @@ def ends_told() -> Iterator[None]:
                 os.write(2, f"vdsc: cannot write the output: {error.strerror or error}\n".encode())
         _silence()
         sys.exit(1 if gone else MACHINE)
+
+
+def _home() -> str:
+    try:
+        return str(Path.home())
+    except RuntimeError:  # nobody this machine knows
+        return tempfile.gettempdir()
 
 
 def _stop(number: int, frame: FrameType | None) -> NoReturn:

@@ -21,13 +21,14 @@ CELL = 0.07  # metres, finest cell
 CEILING = 1.9  # metres; broad things wholly above it do not block the key light of an interior
 GROUND = 0.03  # metres; what is wholly below it casts no shadow worth drawing
 BROAD = 1.5  # square metres
+SHELTER = 0.27  # most of the ambient light that a set keeps off
 
 
 @dataclass(frozen=True, eq=False)
 class Volume:
-    """Blurred surface area, scaled so that one plane gives 1 on it.
+    """How much of the ambient light the set keeps off, from the blurred area of its surfaces.
 
-    values: float32 [X, Y, Z]; low: position of value [0, 0, 0], metres; cell: spacing, metres
+    values: 0..SHELTER, float32 [X, Y, Z]; low: position of value [0, 0, 0], metres; cell: spacing, metres
     """
 
     values: NDArray[np.float32]
@@ -91,7 +92,9 @@ def occlusion_volume(mesh: Mesh, casters: NDArray[np.int32]) -> Volume:
         values += np.bincount(index, weights=share * areas, minlength=len(values))
     reach = max(REACH, 0.9 * cell)
     blurred = gaussian_filter(values.reshape(shape) / cell**3, reach / cell, truncate=2.5)
-    return Volume((blurred * np.sqrt(2 * np.pi) * reach).astype(np.float32), low, cell)
+    near = blurred * np.sqrt(2 * np.pi) * reach  # one plane gives 1 on it
+    kept_off = SHELTER * (1.0 - np.exp(-1.3 * np.maximum(near - 0.38, 0.0)))
+    return Volume(kept_off.astype(np.float32), low, cell)
 
 
 def _surface_points(

@@ -40,7 +40,7 @@ class Backend:
             return np.zeros(shape, dtype)
         import taichi as ti
 
-        kinds = {"f4": ti.f32, "i4": ti.i32, "u1": ti.u8, "u4": ti.u32, "u8": ti.u64}
+        kinds = {"f4": ti.f32, "i4": ti.i32, "u1": ti.u8, "u2": ti.u16, "u4": ti.u32, "u8": ti.u64}
         return ti.ndarray(kinds[np.dtype(dtype).str[1:]], shape=shape)
 
     def upload(self, array: NDArray[Any]) -> Any:

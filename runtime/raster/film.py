@@ -37,7 +37,10 @@ def unexposed(picture: NDArray[np.floating]) -> NDArray[np.float64]:
     return np.minimum(x / EXPOSURE, FILM_RANGE)
 
 
-def film_table() -> NDArray[np.uint8]:
-    """sRGB bytes for scene light 0..FILM_RANGE in even steps."""
+def film_table() -> NDArray[np.uint16]:
+    """sRGB for scene light 0..FILM_RANGE in even steps.
+
+    In 256ths of a byte, with half a byte added, so that the upper byte is rounded.
+    """
     light = np.linspace(0.0, FILM_RANGE, FILM_SIZE)
-    return np.round(to_encoded(exposed(light)) * 255.0).astype(np.uint8)
+    return np.round(to_encoded(exposed(light)) * 255.0 * 256.0 + 128.0).astype(np.uint16)

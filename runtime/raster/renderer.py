@@ -43,7 +43,6 @@ class Renderer:
         self._light = light
         self._shading = shading.shading_kernels(self.style)
         self._finish = finish.finish_kernels(self.style)
-        self._block = finish.BLOCK
         table = np.round(to_encoded(np.arange(4096) / 4095.0) * 255.0).astype(np.uint32)
         self._film = self.backend.upload(film_table())
         self._table = self.backend.upload(table)
@@ -87,6 +86,13 @@ class Renderer:
         self._arrays["values"] = up(volume.values.reshape(-1))
         self._arrays["volume_low"] = up(np.array([*volume.low, 1.0 / volume.cell], np.float32))
         self._volume_shape = volume.values.shape
+        a, count = self._arrays, prepared.static_faces
+        self._sheet = self.backend.buffer((2 * max(count, 1) * self._shading.SHEET,), np.float32)
+        self._shading.fold(
+            *(a[name] for name in ("vertices", "normals", "faces", "color", "info", "light")),
+            count,
+            self._sheet,
+        )
         self._load_floor(prepared)
         self._load_shadow(prepared)
         self._walls = scene.wall_count
@@ -272,6 +278,9 @@ class Renderer:
         vis = self._buffer("vis", (pixels,), np.uint64)
         picture = self._buffer("picture", (pixels,), np.uint32)
         edge = self._buffer("edge", (pixels,), np.uint32)
+        runs = views * height * -(-width // self._shading.RUN)
+        solid = self._buffer("solid", (runs,), np.int32)
+        marks = self._buffer("marks", (runs,), np.int32)
         view_, moment_, hidden_ = up(view), up(moment), up(hidden)
         self._rasterise(view_, moment_, hidden_, vis, size, views)
         self._shading.rows(
@@ -284,6 +293,7 @@ class Renderer:
             a["faces"],
             a["color"],
             a["info"],
+            self._sheet,
             scene.static_faces,
             len(scene.vertices),
             a["light"],
@@ -307,32 +317,31 @@ class Renderer:
             vis,
             picture,
             edge,
+            solid,
+            views,
+            width,
+            height,
+        )
+        self._finish.ink_rows(
+            view_,
+            picture,
+            edge,
+            vis,
+            solid,
+            a["surface_object"],
+            scene.moving_surface,
+            self._linear,
+            self._table,
+            marks,
             views,
             width,
             height,
         )
         final = color.reshape(-1)
-        busy = self._buffer("busy", (views * height * -(-width // self._block),), np.int32)
-        if self.style.outline:
-            inked = self._buffer("inked", (pixels,), np.uint32)
-            self._finish.ink_rows(
-                view_,
-                picture,
-                edge,
-                vis,
-                a["surface_object"],
-                scene.moving_surface,
-                self._linear,
-                self._table,
-                inked,
-                busy,
-                final,
-                views,
-                width,
-                height,
-            )
-            picture = inked
-        self._finish.smooth_rows(picture, busy, self._linear, self._table, final, views, width, height)
+        smooth = self._finish.smooth_rows
+        if width % 4 == 0:
+            final, smooth = final.view(np.uint32), self._finish.smooth_words
+        smooth(picture, marks, self._linear, self._table, final, views, width, height)
         if objects is not None:
             self._finish.object_ids(edge, a["surface_object"], objects.reshape(-1), pixels)
 

@@ -200,7 +200,7 @@ def test_people_throw_shadows_and_are_inked() -> None:
     assert 30 < shade.sum() < 0.2 * floor.sum()
     person = np.argwhere(bare.ids[0] == 1).mean(axis=0)
     assert np.argwhere(shade).mean(axis=0)[1] < person[1]
-    assert (darker[floor] > -3).all()
+    assert (darker[floor] >= -3).all()  # each channel may round another way
     inked = draw(s, views, size, Style("inked", outline=True, shadows=False, occlusion=False))
     drop = bare.color[0].astype(int).sum(-1) - inked.color[0].astype(int).sum(-1)
     inside = bare.ids[0] == 1

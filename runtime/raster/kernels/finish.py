@@ -12,12 +12,12 @@ from types import SimpleNamespace
 import taichi as ti
 
 from ..types import Style
-from .geometry import f1, f2, i1, u8s, u32s, u64s, vec3
+from .geometry import f1, f2, i1, nearness, triangle, u8s, u32s, u64s, vec3
 from .shading import NOTHING, encode, unpack_normal
+from .shading import RUN as BLOCK
 
 i32s = ti.types.ndarray(ti.i32, ndim=1)
 TOUCH = 0.04  # metres
-BLOCK = 16  # pixels; where no edge is near a block, nothing is smoothed
 SEARCH = 9  # pixels looked along an edge, either way
 
 
@@ -28,12 +28,6 @@ def decode(c, table: ti.template()):
         table[ti.cast((c >> 8) & 0xFF, ti.i32)],
         table[ti.cast((c >> 16) & 0xFF, ti.i32)],
     )
-
-
-@ti.func
-def nearness(vis: ti.template(), at):
-    """1/z of a pixel, 0 for the backdrop."""
-    return ti.bit_cast(ti.cast(vis[at] >> 32, ti.u32), ti.f32)
 
 
 @ti.func
@@ -86,6 +80,52 @@ def line_weight(e, f, w, w_f, w_back, first_moving, owner: ti.template()):
     return out
 
 
+@ti.func
+def alone(x, y, at, width, height, vis: ti.template()):
+    """Whether one triangle is at a pixel and all around it."""
+    t = ti.cast(vis[at], ti.u32)
+    out = x == 0 or t == ti.cast(vis[at - 1], ti.u32)
+    out = out and (x == width - 1 or t == ti.cast(vis[at + 1], ti.u32))
+    out = out and (y == 0 or t == ti.cast(vis[at - width], ti.u32))
+    return out and (y == height - 1 or t == ti.cast(vis[at + width], ti.u32))
+
+
+@ti.func
+def even(x, y, at, width, height, moves, edge: ti.template(), vis: ti.template()):
+    """Whether a pixel is obviously within a surface: quicker to find than how strong its lines are."""
+    out = False
+    if 1 < x < width - 2 and 1 < y < height - 2:
+        e = edge[at]
+        a, b, c, d = edge[at - 1], edge[at + 1], edge[at - width], edge[at + width]
+        other = (e ^ a) | (e ^ b) | (e ^ c) | (e ^ d)
+        if moves and height > 360:
+            other |= (e ^ edge[at - 2]) | (e ^ edge[at + 2])
+            other |= (e ^ edge[at - 2 * width]) | (e ^ edge[at + 2 * width])
+        if other >> 16 == 0:
+            w = nearness(vis, at)
+            allowed = 0.03 * w * w
+            across = 2 * w - nearness(vis, at - 1) - nearness(vis, at + 1)
+            down = 2 * w - nearness(vis, at - width) - nearness(vis, at + width)
+            out = ti.abs(across) < allowed and ti.abs(down) < allowed
+            if out and other != 0:
+                out = level(e, a) and level(e, b) and level(e, c) and level(e, d)
+    return out
+
+
+@ti.func
+def level(e, f):
+    """Whether two packed normals are obviously close."""
+    x = ti.cast((e >> 8) & 0xFF, ti.i32) - ti.cast((f >> 8) & 0xFF, ti.i32)
+    y = ti.cast(e & 0xFF, ti.i32) - ti.cast(f & 0xFF, ti.i32)
+    return ti.abs(x) + ti.abs(y) <= 30
+
+
+@ti.func
+def paired(a, b):
+    """The bytes of two pixels, 48 bits."""
+    return ti.cast(a & 0xFFFFFF, ti.u64) | (ti.cast(b & 0xFFFFFF, ti.u64) << 24)
+
+
 @lru_cache(maxsize=8)
 def finish_kernels(style: Style) -> SimpleNamespace:
     """The finishing kernels of a style."""
@@ -107,25 +147,23 @@ def finish_kernels(style: Style) -> SimpleNamespace:
         linear: ti.template(),
         table: ti.template(),
     ):
-        """The picture's pixel with its share of ink, and whether one triangle is all around it.
+        """Give a pixel its share of ink; returns whether something ends here.
 
         weight: width in pixels of a line 1 m away
         """
-        out = picture[at]
+        same = alone(x, y, at, width, height, vis)
         e = edge[at]
-        left = at - 1 if x > 0 else at
-        right = at + 1 if x < width - 1 else at
-        above = at - width if y > 0 else at
-        below = at + width if y < height - 1 else at
-        t = ti.cast(vis[at], ti.u32)
-        same = (
-            t == ti.cast(vis[left], ti.u32)
-            and t == ti.cast(vis[right], ti.u32)
-            and t == ti.cast(vis[above], ti.u32)
-            and t == ti.cast(vis[below], ti.u32)
-        )
         moves = ti.cast(e >> 16, ti.i32) >= first_moving
-        if e != ti.u32(NOTHING) and (moves or not same):
+        marked = not same
+        if (
+            e != ti.u32(NOTHING)
+            and (moves or not same)
+            and not even(x, y, at, width, height, moves, edge, vis)
+        ):
+            left = at - 1 if x > 0 else at
+            right = at + 1 if x < width - 1 else at
+            above = at - width if y > 0 else at
+            below = at + width if y < height - 1 else at
             w = nearness(vis, at)
             broad = ti.min(ti.max(weight * w, 1.0), ti.max(1.0, height / 360.0))
             ring = ti.Vector([left, right, above, below])
@@ -160,7 +198,8 @@ def finish_kernels(style: Style) -> SimpleNamespace:
                                 share * line_weight(f, g, w_q, nearness(vis, far), w, first_moving, owner),
                             )
             if ink > 0:
-                c = decode(out, linear)
+                marked = True
+                c = decode(picture[at], linear)
                 # people: near black, a little of their colour; sets: a deeper shade of their own tint
                 line = c * 0.06 + vec3(0.006, 0.005, 0.009)
                 if not moves:
@@ -168,8 +207,8 @@ def finish_kernels(style: Style) -> SimpleNamespace:
                     ink *= ti.min(1.0, 0.35 + 2.6 * w)
                 else:
                     ink *= ti.min(1.0, 0.5 + 5.0 * w)
-                out = encode(c + (line - c) * ink, table)
-        return out, same
+                picture[at] = encode(c + (line - c) * ink, table)
+        return marked
 
     @ti.kernel
     def ink_rows(
@@ -177,52 +216,65 @@ def finish_kernels(style: Style) -> SimpleNamespace:
         picture: u32s,
         edge: u32s,
         vis: u64s,
+        solid: i32s,
         owner: i1,
         first_moving: ti.i32,
         linear: f1,
         table: u32s,
-        out: u32s,
-        busy: i32s,
-        final: u8s,
+        marks: i32s,
         views: ti.i32,
         width: ti.i32,
         height: ti.i32,
     ):
-        """The inked picture, packed and as final bytes, and how many pixels of each block are at an edge."""
+        """Ink the picture in place, and mark in each block, a bit a pixel, where something ends.
+
+        solid: the triangle of the set that fills each block alone, 0 for none, -1 for the backdrop
+        """
         for line in range(views * height):
             weight = 0.0065 * view[line // height, 13]
             y = line % height
             blocks = (width + BLOCK - 1) // BLOCK
             for b in range(blocks):
-                edges = 0
-                for x in range(b * BLOCK, ti.min(width, b * BLOCK + BLOCK)):
-                    at = line * width + x
-                    c, even = inked(
-                        x,
-                        y,
-                        at,
-                        width,
-                        height,
-                        weight,
-                        first_moving,
-                        picture,
-                        edge,
-                        vis,
-                        owner,
-                        linear,
-                        table,
+                k = line * blocks + b
+                whole = solid[k]
+                quiet = (
+                    whole != 0
+                    and (y == 0 or solid[k - blocks] == whole)
+                    and (y == height - 1 or solid[k + blocks] == whole)
+                )
+                if quiet and b > 0:
+                    quiet = ti.cast(ti.cast(vis[line * width + b * BLOCK - 1], ti.u32), ti.i32) == ti.max(
+                        whole, 0
                     )
-                    out[at] = c
-                    if not even:
-                        edges += 1
-                    store(c, at, final)
-                busy[line * blocks + b] = edges
-
-    @ti.func
-    def store(c, at, final: ti.template()):
-        final[3 * at] = ti.cast(c & 0xFF, ti.u8)
-        final[3 * at + 1] = ti.cast((c >> 8) & 0xFF, ti.u8)
-        final[3 * at + 2] = ti.cast((c >> 16) & 0xFF, ti.u8)
+                if quiet and b < blocks - 1:
+                    quiet = triangle(vis, line * width + b * BLOCK + BLOCK) + 1 == ti.max(whole, 0)
+                bits = 0
+                if not quiet:
+                    for i in range(ti.min(BLOCK, width - b * BLOCK)):
+                        x = b * BLOCK + i
+                        at = line * width + x
+                        marked = False
+                        if ti.static(outline):
+                            marked = inked(
+                                x,
+                                y,
+                                at,
+                                width,
+                                height,
+                                weight,
+                                first_moving,
+                                picture,
+                                edge,
+                                vis,
+                                owner,
+                                linear,
+                                table,
+                            )
+                        else:
+                            marked = not alone(x, y, at, width, height, vis)
+                        if marked:
+                            bits |= 1 << i
+                marks[k] = bits
 
     @ti.func
     def luma(c):
@@ -289,10 +341,30 @@ def finish_kernels(style: Style) -> SimpleNamespace:
                     out = encode(a + (decode(src[q], linear) - a) * share, table)
         return out
 
+    @ti.func
+    def near_marks(line, y, b, blocks, height, marks: ti.template()):
+        """Bits of the pixels of a block that are marked or have a marked neighbour."""
+        out = 0
+        for i in ti.static(range(-1, 2)):
+            if 0 <= b + i < blocks:
+                k = line * blocks + b + i
+                bits = marks[k]
+                if y > 0:
+                    bits |= marks[k - blocks]
+                if y < height - 1:
+                    bits |= marks[k + blocks]
+                if ti.static(i == 0):
+                    out |= bits | (bits << 1) | (bits >> 1)
+                elif ti.static(i < 0):
+                    out |= bits >> (BLOCK - 1)
+                else:
+                    out |= bits << (BLOCK - 1)
+        return out
+
     @ti.kernel
     def smooth_rows(
         src: u32s,
-        busy: i32s,
+        marks: i32s,
         linear: f1,
         table: u32s,
         final: u8s,
@@ -300,21 +372,60 @@ def finish_kernels(style: Style) -> SimpleNamespace:
         width: ti.i32,
         height: ti.i32,
     ):
-        """Final bytes of the smoothed picture; with ink, blocks without edges are already there."""
+        """Final bytes of the picture, smoothed where something ends."""
         for line in range(views * height):
             y = line % height
             blocks = (width + BLOCK - 1) // BLOCK
             for b in range(blocks):
-                near = 1
-                if ti.static(outline):
-                    near = 0
-                    for j in range(ti.max(y - 1, 0) - y, ti.min(y + 1, height - 1) - y + 1):
-                        for i in range(ti.max(b - 1, 0), ti.min(b + 2, blocks)):
-                            near += busy[(line + j) * blocks + i]
-                if near > 0:
-                    for x in range(b * BLOCK, ti.min(width, b * BLOCK + BLOCK)):
-                        at = line * width + x
-                        store(smoothed(x, y, at, width, height, src, linear, table), at, final)
+                bits = near_marks(line, y, b, blocks, height, marks)
+                for x in range(b * BLOCK, ti.min(width, b * BLOCK + BLOCK)):
+                    at = line * width + x
+                    c = src[at]
+                    if bits & 1:
+                        c = smoothed(x, y, at, width, height, src, linear, table)
+                    bits >>= 1
+                    final[3 * at] = ti.cast(c & 0xFF, ti.u8)
+                    final[3 * at + 1] = ti.cast((c >> 8) & 0xFF, ti.u8)
+                    final[3 * at + 2] = ti.cast((c >> 16) & 0xFF, ti.u8)
+
+    @ti.kernel
+    def smooth_words(
+        src: u32s,
+        marks: i32s,
+        linear: f1,
+        table: u32s,
+        final: u32s,
+        views: ti.i32,
+        width: ti.i32,
+        height: ti.i32,
+    ):
+        """As smooth_rows, for widths that four divides: four pixels are three words."""
+        for line in range(views * height):
+            y = line % height
+            blocks = (width + BLOCK - 1) // BLOCK
+            for b in range(blocks):
+                bits = near_marks(line, y, b, blocks, height, marks)
+                for group in range((ti.min(BLOCK, width - b * BLOCK)) // 4):
+                    x = b * BLOCK + 4 * group
+                    at = line * width + x
+                    low = ti.u64(0)
+                    high = ti.u64(0)
+                    if (bits >> (4 * group)) & 15 == 0:
+                        low = paired(src[at], src[at + 1])
+                        high = paired(src[at + 2], src[at + 3])
+                    else:
+                        for i in range(4):
+                            c = src[at + i]
+                            if (bits >> (4 * group + i)) & 1:
+                                c = smoothed(x + i, y, at + i, width, height, src, linear, table)
+                            if i < 2:
+                                low |= ti.cast(c & 0xFFFFFF, ti.u64) << (24 * i)
+                            else:
+                                high |= ti.cast(c & 0xFFFFFF, ti.u64) << (24 * i - 48)
+                    word = at // 4 * 3
+                    final[word] = ti.cast(low, ti.u32)
+                    final[word + 1] = ti.cast(low >> 32, ti.u32) | ti.cast(high << 16, ti.u32)
+                    final[word + 2] = ti.cast(high >> 16, ti.u32)
 
     @ti.kernel
     def object_ids(edge: u32s, owner: i1, out: i32s, count: ti.i32):
@@ -322,4 +433,6 @@ def finish_kernels(style: Style) -> SimpleNamespace:
             s = ti.cast(edge[i] >> 16, ti.i32)
             out[i] = owner[s] if s != 0xFFFF else -1
 
-    return SimpleNamespace(ink_rows=ink_rows, smooth_rows=smooth_rows, object_ids=object_ids)
+    return SimpleNamespace(
+        ink_rows=ink_rows, smooth_rows=smooth_rows, smooth_words=smooth_words, object_ids=object_ids
+    )

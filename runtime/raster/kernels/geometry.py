@@ -22,8 +22,21 @@ f4 = ti.types.ndarray(ti.f32, ndim=4)
 i1 = ti.types.ndarray(ti.i32, ndim=1)
 i2 = ti.types.ndarray(ti.i32, ndim=2)
 u8s = ti.types.ndarray(ti.u8, ndim=1)
+u16s = ti.types.ndarray(ti.u16, ndim=1)
 u32s = ti.types.ndarray(ti.u32, ndim=1)
 u64s = ti.types.ndarray(ti.u64, ndim=1)
+
+
+@ti.func
+def triangle(vis: ti.template(), at):
+    """The triangle at a pixel of a visibility buffer, -1 for none."""
+    return ti.cast(ti.cast(vis[at], ti.u32), ti.i32) - 1
+
+
+@ti.func
+def nearness(vis: ti.template(), at):
+    """1/z of a pixel of a visibility buffer, 0 where nothing is."""
+    return ti.bit_cast(ti.cast(vis[at] >> 32, ti.u32), ti.f32)
 
 
 @ti.func

@@ -67,22 +67,26 @@ def pattern(material, p, n, blur):
             if strong > 0:
                 out = 1.0 + (value_noise(u * 34.0, v * 2.2) - 0.5) * strong
         else:
-            row = v / 0.13
+            row = v * (1.0 / 0.13)
             line = ti.floor(row)
-            along = u / 1.3 + hashed(ti.cast(line, ti.i32), 7)
+            along = u * (1.0 / 1.3) + hashed(ti.cast(line, ti.i32), 7)
             tone = hashed(ti.cast(line, ti.i32), ti.cast(ti.floor(along), ti.i32))
             out = 1.0 + (tone - 0.5) * 0.13 * fade(blur, 0.13)
             strong = 0.07 * fade(blur, 0.022)
             if strong > 0:
                 out += (value_noise(u * 2.4 + 13.0 * line, v * 46.0) - 0.5) * strong
-            gap = ti.max(joint(row, 0.004 / 0.13, blur / 0.13), joint(along, 0.004 / 1.3, blur / 1.3))
+            gap = ti.max(
+                joint(row, 0.004 / 0.13, blur * (1.0 / 0.13)), joint(along, 0.004 / 1.3, blur * (1.0 / 1.3))
+            )
             out *= 1.0 - 0.3 * gap
     elif material == 2:  # tile
         size = 0.15 if upright else 0.3
-        x, y = u / size, v / size
+        inverse = 1.0 / 0.15 if upright else 1.0 / 0.3
+        x, y = u * inverse, v * inverse
         tone = hashed(ti.cast(ti.floor(x), ti.i32), ti.cast(ti.floor(y), ti.i32))
         out = 1.0 + (tone - 0.5) * 0.05 * fade(blur, size)
-        gap = ti.max(joint(x, 0.005 / size, blur / size), joint(y, 0.005 / size, blur / size))
+        line = 0.005 * inverse
+        gap = ti.max(joint(x, line, blur * inverse), joint(y, line, blur * inverse))
         out *= 1.0 - 0.24 * gap
     elif material == 3:  # brick
         y = v / 0.075

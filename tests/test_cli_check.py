@@ -193,8 +193,8 @@ def test_explain_knows_its_codes() -> None:
 
 def test_checking_loads_nothing_heavy() -> None:
     code = (
-        "import sys; from vdsl.cli.check import check_file; from pathlib import Path;"
-        f"assert check_file(Path({str(EXAMPLE)!r})).storyboard;"
+        "import sys; from vdsl.cli.check import check_or_exit; from pathlib import Path;"
+        f"assert check_or_exit(Path({str(EXAMPLE)!r})).storyboard;"
         "print([m for m in ('numpy', 'torch', 'taichi', 'cv2', 'av', 'scipy', 'PIL') if m in sys.modules])"
     )
     run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)

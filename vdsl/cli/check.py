@@ -7,21 +7,16 @@ errors, 2 usage, 3 the machine failed.
 from __future__ import annotations
 
 import sys
-from dataclasses import dataclass
 from enum import Enum
 from pathlib import Path
 from typing import Annotated, NoReturn
 
 import typer
 
-from ..lang import ast
-from ..lang.check import check as check_script
-from ..lang.diagnostics import Report, nearest
-from ..lang.files import read_source
+from ..lang.diagnostics import nearest
 from ..lang.ir import Storyboard
-from ..lang.parse import parse
 from ..lang.settings import Settings
-from ..library.loader import Catalog
+from ..pipeline.script import Checked, ScriptError, load_storyboard
 from .show import print_report, printable, write_line
 
 FINE, WRONG, USAGE, MACHINE = 0, 1, 2, 3
@@ -34,31 +29,10 @@ class Format(str, Enum):
     json = "json"
 
 
-@dataclass(frozen=True)
-class Checked:
-    """What reading a file came to; ``storyboard`` is None where the report has errors."""
-
-    report: Report
-    script: ast.Script | None
-    catalog: Catalog | None
-    storyboard: Storyboard | None
-
-
-def check_file(path: Path, overrides: Settings | None = None) -> Checked:
-    """Read, parse and check a file. Raises OSError where the machine cannot read it."""
-    report = Report()
-    source = read_source(path, report)
-    if source is None:
-        return Checked(report, None, None, None)
-    script, _ = parse(source, report)
-    catalog = Catalog.for_script(script, report)
-    return Checked(report, script, catalog, check_script(script, catalog, report, overrides))
-
-
 def check_or_exit(
     path: Path, format: str = "text", overrides: Settings | None = None, quiet_warnings: bool = False
 ) -> Checked:
-    """As :func:`check_file`, for commands: print what was found, leave with the right code if it is wrong.
+    """A storyboard without errors; else print what is wrong and leave with the right code.
 
     quiet_warnings: print nothing where there are only warnings
     """
@@ -70,15 +44,16 @@ def check_or_exit(
     if path.is_dir():
         stop(f"{path} is a folder; name a .vds file in it.", USAGE)
     try:
-        checked = check_file(path, overrides)
+        checked = load_storyboard(path, overrides)
+    except ScriptError as error:
+        print_report(error.report, format, str(path))
+        raise typer.Exit(WRONG) from None
     except OSError as error:
         stop(f"cannot read {path}: {error.strerror or error}", MACHINE)
     except MemoryError:
         stop(f"not enough memory to read {path}", MACHINE)
-    if checked.storyboard is None or not quiet_warnings:
+    if not quiet_warnings:
         print_report(checked.report, format, str(path))
-    if checked.storyboard is None:
-        raise typer.Exit(WRONG)
     return checked
 
 
@@ -97,7 +72,7 @@ def check(
     Exit code 0 if all is well, 1 if the storyboard has errors.
     """
     checked = check_or_exit(file, format.value)
-    if checked.storyboard is not None and format is Format.text:
+    if format is Format.text:
         write_line(f"{printable(str(file))}: {summary(checked.storyboard)}", sys.stdout)
 
 

@@ -1,4 +1,8 @@
-"""The pipeline's progress as bars with rates and time left; silent where nobody looks at a terminal."""
+"""The pipeline's progress as bars with rates and time left; silent where nobody looks at a terminal.
+
+Stages take turns, so a stage's rate and time left go by the seconds spent in it, not by the clock on
+the wall.
+"""
 
 from __future__ import annotations
 
@@ -6,23 +10,28 @@ from types import TracebackType
 
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, ProgressColumn, Task, TaskID, TextColumn
-from rich.progress import TimeRemainingColumn as TimeLeft
 from rich.text import Text
 
 
 class _Rate(ProgressColumn):
-    """Units per second, from the task's own clock."""
+    """Units a second while the stage was at work."""
 
     def render(self, task: Task) -> Text:
-        speed = task.finished_speed or task.speed
-        if not speed:
+        seconds = task.fields["seconds"]
+        if not seconds or not task.completed:
             return Text("")
-        return Text(
-            f"{speed:,.0f} {task.fields['unit']}/s"
-            if speed >= 10
-            else f"{speed:.1f} {task.fields['unit']}/s",
-            style="dim",
-        )
+        rate = task.completed / seconds
+        return Text(f"{rate:,.{0 if rate >= 10 else 1}f} {task.fields['unit']}/s", style="dim")
+
+
+class _Left(ProgressColumn):
+    """Work left in the stage, as minutes and seconds."""
+
+    def render(self, task: Task) -> Text:
+        if not task.fields["seconds"] or not task.completed or task.total is None:
+            return Text("-:--")
+        left = round((task.total - task.completed) * task.fields["seconds"] / task.completed)
+        return Text(f"{left // 60}:{left % 60:02d}")
 
 
 class Bars:
@@ -34,7 +43,7 @@ class Bars:
             BarColumn(bar_width=32),
             MofNCompleteColumn(),
             _Rate(),
-            TimeLeft(),
+            _Left(),
             console=console,
             disable=not console.is_terminal,
         )
@@ -51,11 +60,14 @@ class Bars:
 
     def begin(self, stage: str, total: int, unit: str) -> None:
         if stage not in self._tasks:
-            self._tasks[stage] = self._progress.add_task(stage, total=total, unit=unit)
+            self._tasks[stage] = self._progress.add_task(stage, total=total, unit=unit, seconds=0.0)
             return
-        task = self._tasks[stage]
-        known = next(t.total or 0 for t in self._progress.tasks if t.id == task)
-        self._progress.update(task, total=known + total)
+        task = self._task(stage)
+        self._progress.update(task.id, total=(task.total or 0) + total)
 
-    def advance(self, stage: str, amount: int) -> None:
-        self._progress.advance(self._tasks[stage], amount)
+    def advance(self, stage: str, amount: int, seconds: float) -> None:
+        task = self._task(stage)
+        self._progress.update(task.id, advance=amount, seconds=task.fields["seconds"] + seconds)
+
+    def _task(self, stage: str) -> Task:
+        return next(t for t in self._progress.tasks if t.id == self._tasks[stage])

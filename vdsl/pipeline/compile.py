@@ -97,7 +97,7 @@ def _stage_all(checked: Checked, clock: StageClock) -> list[Act]:
     lines = len(checked.storyboard.lines)
     clock.begin("stage", lines, _UNITS["stage"])
     with clock.spent("stage", lines, quiet=True):
-        return stage_acts(checked, played=lambda: clock.watcher.advance("stage", 1))
+        return stage_acts(checked, played=lambda seconds: clock.watcher.advance("stage", 1, seconds))
 
 
 def _with_something_to_film(checked: Checked) -> Checked:
@@ -114,11 +114,11 @@ def _with_something_to_film(checked: Checked) -> Checked:
 
 
 def stage_acts(
-    checked: Checked, hand: Stagehand | None = None, played: Callable[[], None] = lambda: None
+    checked: Checked, hand: Stagehand | None = None, played: Callable[[float], None] = lambda seconds: None
 ) -> list[Act]:
     """Every line in its scene with its opening state. Raises ScriptError for what cannot be played.
 
-    hand: one that has built sets and bodies before; played: called after every line
+    hand: one that has built sets and bodies before; played: told of every line, with the seconds it took
     """
     storyboard, report = checked.storyboard, checked.report
     hand = hand or Stagehand(checked.catalog)
@@ -141,9 +141,10 @@ def stage_acts(
         )
         state = opening_state(scene, staged.world, skeletons, report)
         for line in lines:
+            begun = perf_counter()
             acts.append(Act(line, staged, filming, state))
             state = advance(state, line, checked.catalog, filming, report)
-            played()
+            played(perf_counter() - begun)
     if report.has_errors:
         raise ScriptError(report)
     order = {id(line): i for i, line in enumerate(storyboard.lines)}

@@ -11,6 +11,7 @@ import json
 import random
 from dataclasses import dataclass, replace
 from pathlib import Path
+from time import perf_counter
 
 import numpy as np
 
@@ -59,7 +60,7 @@ def generate(
     Returns how many there are. Raises OSError or :class:`ranker.RankerError` for a folder that cannot
     be used.
     """
-    progress = progress or Silence()
+    watcher = progress or Silence()
     catalog = Catalog(Report())
     grounds = places(catalog)
     cast = tuple(sorted(catalog.names("cast")))
@@ -68,18 +69,17 @@ def generate(
     marker = folder / "stories.json"
     with ShardWriter(folder, WORDS) as writer:
         number = json.loads(marker.read_text("utf-8"))["next"] if marker.exists() else 0
-        progress.begin("clips", clips, "clips")
-        progress.advance("clips", min(len(writer), clips))
+        watcher.begin("clips", max(0, clips - len(writer)), "clips")
         while len(writer) < clips:
             place = grounds[number % len(grounds)]
             rng = random.Random(f"{seed} story {number}")
             text = random_story(catalog, place, rng, _LINES, cast)
-            before = len(writer)
+            before, begun = len(writer), perf_counter()
             _film_story(text, number, seed, f"{place.set}.{place.room}", hand, camerawork, writer)
             writer.flush()
             number += 1
             marker.write_text(json.dumps({"next": number}), "utf-8")
-            progress.advance("clips", len(writer) - before)
+            watcher.advance("clips", len(writer) - before, perf_counter() - begun)
         return len(writer)
 
 

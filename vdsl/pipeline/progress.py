@@ -15,8 +15,8 @@ class Progress(Protocol):
     def begin(self, stage: str, total: int, unit: str) -> None:
         """A stage with so many units of work ahead; called again, the total grows by that much."""
 
-    def advance(self, stage: str, amount: int) -> None:
-        """So many more units are done."""
+    def advance(self, stage: str, amount: int, seconds: float) -> None:
+        """So many more units are done, in so many seconds of work."""
 
 
 class Silence:
@@ -25,7 +25,7 @@ class Silence:
     def begin(self, stage: str, total: int, unit: str) -> None:
         pass
 
-    def advance(self, stage: str, amount: int) -> None:
+    def advance(self, stage: str, amount: int, seconds: float) -> None:
         pass
 
 
@@ -50,7 +50,8 @@ class StageClock:
         try:
             yield
         finally:
-            self.seconds[stage] = self.seconds.get(stage, 0.0) + perf_counter() - start
+            seconds = perf_counter() - start
+            self.seconds[stage] = self.seconds.get(stage, 0.0) + seconds
         self.units[stage] = self.units.get(stage, 0) + amount
         if not quiet:
-            self.watcher.advance(stage, amount)
+            self.watcher.advance(stage, amount, seconds)

@@ -37,6 +37,7 @@ class Prepared:
     clusters: int32 [C, 4]: first triangle, count, cull, wall; moving_first: index of the first skinned one
     sphere: float32 [C, 4], bounds of the static ones
     surface_object: int32 [S]: object id of each surface, a surface being one part of one object
+    one_color: int32 [S], 1 where all faces of a surface have one colour
     moving_surface: index of the first skinned surface; static_faces: number of static triangles
     set_casters, casters: int32, triangles that throw shadows, static and skinned; area: float32 [K], square
     metres a skinned vertex stands for; volume: occlusion of the set; stage: corners of
@@ -54,6 +55,7 @@ class Prepared:
     moving_first: int
     sphere: NDArray[np.float32]
     surface_object: NDArray[np.int32]
+    one_color: NDArray[np.int32]
     moving_surface: int
     static_faces: int
     set_casters: NDArray[np.int32]
@@ -204,6 +206,7 @@ def prepare(scene: RenderScene, style: Style) -> Prepared:
         moving_first=len(clusters),
         sphere=_spheres(static, clusters),
         surface_object=surfaces[:, 1].astype(np.int32),
+        one_color=_one_color(color, surface.reshape(-1), len(surfaces)),
         moving_surface=int((surfaces[:, 0] == 0).sum()),
         static_faces=len(order),
         set_casters=set_casters,
@@ -218,6 +221,14 @@ def _flat(mesh: Mesh) -> NDArray[np.int32]:
     """1 where a face's three normals are the same."""
     n = mesh.normals[mesh.faces]
     return ((n[:, 0] == n[:, 1]).all(axis=1) & (n[:, 0] == n[:, 2]).all(axis=1)).astype(np.int32)
+
+
+def _one_color(color: NDArray[np.float64], surface: NDArray[np.int64], surfaces: int) -> NDArray[np.int32]:
+    """1 where all faces of a surface have the same colour, int32 [S]."""
+    low, high = np.full((surfaces, 3), np.inf), np.full((surfaces, 3), -np.inf)
+    np.minimum.at(low, surface, color)
+    np.maximum.at(high, surface, color)
+    return (high - low < 1e-3).all(axis=1).astype(np.int32)
 
 
 def _vertex_area(mesh: Mesh) -> NDArray[np.float32]:

@@ -68,6 +68,7 @@ class Renderer:
                 "clusters",
                 "sphere",
                 "surface_object",
+                "one_color",
                 "casters",
                 "area",
             )
@@ -329,6 +330,7 @@ class Renderer:
             vis,
             solid,
             a["surface_object"],
+            a["one_color"],
             scene.moving_surface,
             self._linear,
             self._table,

@@ -144,6 +144,7 @@ def finish_kernels(style: Style) -> SimpleNamespace:
         edge: ti.template(),
         vis: ti.template(),
         owner: ti.template(),
+        one_color: ti.template(),
         linear: ti.template(),
         table: ti.template(),
     ):
@@ -151,15 +152,20 @@ def finish_kernels(style: Style) -> SimpleNamespace:
 
         weight: width in pixels of a line 1 m away
         """
-        same = alone(x, y, at, width, height, vis)
         e = edge[at]
-        moves = ti.cast(e >> 16, ti.i32) >= first_moving
-        marked = not same
-        if (
-            e != ti.u32(NOTHING)
-            and (moves or not same)
-            and not even(x, y, at, width, height, moves, edge, vis)
-        ):
+        s = ti.cast(e >> 16, ti.i32)
+        moves = s >= first_moving and e != ti.u32(NOTHING)
+        marked = True
+        near_line = True
+        if moves:
+            near_line = not even(x, y, at, width, height, True, edge, vis)
+            marked = near_line or one_color[s] == 0
+        else:
+            marked = not alone(x, y, at, width, height, vis)
+            near_line = (
+                marked and e != ti.u32(NOTHING) and not even(x, y, at, width, height, False, edge, vis)
+            )
+        if near_line:
             left = at - 1 if x > 0 else at
             right = at + 1 if x < width - 1 else at
             above = at - width if y > 0 else at
@@ -218,6 +224,7 @@ def finish_kernels(style: Style) -> SimpleNamespace:
         vis: u64s,
         solid: i32s,
         owner: i1,
+        one_color: i1,
         first_moving: ti.i32,
         linear: f1,
         table: u32s,
@@ -228,6 +235,7 @@ def finish_kernels(style: Style) -> SimpleNamespace:
     ):
         """Ink the picture in place, and mark in each block, a bit a pixel, where something ends.
 
+        one_color: whether all of a surface is one colour, so that only its border needs smoothing;
         solid: the triangle of the set that fills each block alone, 0 for none, -1 for the backdrop
         """
         for line in range(views * height):
@@ -267,6 +275,7 @@ def finish_kernels(style: Style) -> SimpleNamespace:
                                 edge,
                                 vis,
                                 owner,
+                                one_color,
                                 linear,
                                 table,
                             )

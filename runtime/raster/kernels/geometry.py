@@ -112,6 +112,17 @@ def bounded(x, least, most):
 
 
 @ti.func
+def lesser(x, y):
+    """The smaller one; for numbers, never NaN, as in :func:`bounded`."""
+    return ti.select(x < y, x, y)
+
+
+@ti.func
+def greater(x, y):
+    return ti.select(x > y, x, y)
+
+
+@ti.func
 def to_pixel(v):
     """First pixel whose centre is not before ``v``."""
     return ti.ceil(v - 0.5)
@@ -120,13 +131,15 @@ def to_pixel(v):
 @ti.func
 def fill(vis: ti.template(), exact: ti.template(), base, width, y_from, y_to, y_step, low, a, b, c):
     """Walk the spans of one screen triangle; corners are (x, y, 1/z), ``low`` the low word of the key."""
-    y0 = ti.max(y_from, ti.cast(ti.max(to_pixel(ti.min(a.y, b.y, c.y)), -1e6), ti.i32))
-    y1 = ti.min(y_to, ti.cast(ti.min(to_pixel(ti.max(a.y, b.y, c.y)), 1e6), ti.i32))
-    left = to_pixel(ti.min(a.x, b.x, c.x))
-    right = to_pixel(ti.max(a.x, b.x, c.x))
+    top = to_pixel(lesser(lesser(a.y, b.y), c.y))
+    bottom = to_pixel(greater(greater(a.y, b.y), c.y))
+    left = to_pixel(lesser(lesser(a.x, b.x), c.x))
+    right = to_pixel(greater(greater(a.x, b.x), c.x))
     limit = ti.cast(width, ti.f32)
     # many triangles lie between pixel centres
-    if y0 < y1 and left < right and right > 0 and left < limit:
+    if top < bottom and left < right and right > 0 and left < limit and bottom > y_from and top < y_to:
+        y0 = ti.cast(greater(top, ti.cast(y_from, ti.f32)), ti.i32)
+        y1 = ti.cast(lesser(bottom, ti.cast(y_to, ti.f32)), ti.i32)
         if a.y > b.y:
             a, b = b, a
         if b.y > c.y:
@@ -143,8 +156,8 @@ def fill(vis: ti.template(), exact: ti.template(), base, width, y_from, y_to, y_
             inverse = 1.0 / det
             slope_x = (ab.z * ac.y - ac.z * ab.y) * inverse
             slope_y = (ac.z * ab.x - ab.z * ac.x) * inverse
-            least = ti.min(a.z, b.z, c.z)
-            most = ti.max(a.z, b.z, c.z)
+            least = lesser(lesser(a.z, b.z), c.z)
+            most = greater(greater(a.z, b.z), c.z)
             long = ac.x / ac.y
             upper = ab.x / ab.y if ab.y > 0 else 0.0
             lower = bc.x / bc.y if bc.y > 0 else 0.0
@@ -155,8 +168,8 @@ def fill(vis: ti.template(), exact: ti.template(), base, width, y_from, y_to, y_
                 xb = a.x + (centre - a.y) * upper
                 if centre >= b.y:
                     xb = b.x + (centre - b.y) * lower
-                x0 = ti.cast(ti.min(ti.max(to_pixel(ti.min(xa, xb)), 0.0), limit), ti.i32)
-                x1 = ti.cast(ti.min(ti.max(to_pixel(ti.max(xa, xb)), 0.0), limit), ti.i32)
+                x0 = ti.cast(bounded(to_pixel(lesser(xa, xb)), 0.0, limit), ti.i32)
+                x1 = ti.cast(bounded(to_pixel(greater(xa, xb)), 0.0, limit), ti.i32)
                 row = a.z + (centre - a.y) * slope_y + (0.5 - a.x) * slope_x
                 start = base + y * width
                 for x in range(x0, x1):

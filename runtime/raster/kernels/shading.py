@@ -507,6 +507,8 @@ def shading_kernels(style: Style) -> SimpleNamespace:
                         # triangle goes on, the end is the first pixel of the next stretch
                         goes_on = stop < width and triangle(vis, at + stop - x) == t
                         end = stop if goes_on else stop - 1
+                        if end == x + 1 and not goes_on:
+                            end = x  # two pixels have one light
                         begin_at = end_at
                         if joined:
                             shade, tone, haze, free = shade_end, tone_end, haze_end, free_end

@@ -9,11 +9,13 @@ from __future__ import annotations
 import contextlib
 import io
 import os
+import tempfile
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import DTypeLike, NDArray
+from platformdirs import user_cache_path
 
 DEVICES = ("auto", "cpu", "cuda", "vulkan")
 
@@ -74,6 +76,7 @@ def start(device: str = "auto") -> Backend:
     import taichi as ti
 
     threads = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    cache = _kernel_cache()
     wanted = {"auto": ("cuda", "cpu")}.get(device, (device,))
     for name in wanted:
         arch = getattr(ti, name)
@@ -83,15 +86,29 @@ def start(device: str = "auto") -> Backend:
             with contextlib.redirect_stdout(io.StringIO()):  # it prints a banner
                 ti.init(
                     arch=arch,
-                    offline_cache=True,
+                    offline_cache=cache is not None,
+                    **({} if cache is None else {"offline_cache_file_path": cache}),
                     cpu_max_num_threads=threads,
                     fast_math=False,  # shared edges must come out the same in every triangle
                     log_level=ti.ERROR,
                     enable_fallback=False,
                 )
         except Exception as error:  # Taichi raises what it likes when a driver is missing
+            if name != wanted[-1]:
+                continue
             raise DeviceError(f"no usable {name} device here ({error}); try --device cpu") from error
         if ti.lang.impl.current_cfg().arch == arch or name == "cpu":
             _started.append(Backend(name, threads))
             return _started[0]
     raise DeviceError(f"no usable {device} device here; try --device cpu")
+
+
+def _kernel_cache() -> str | None:
+    """A folder for compiled kernels, or None where there can be none (Taichi would crash on it)."""
+    folder = user_cache_path("vdsl") / "kernels"
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryFile(dir=folder):
+            return str(folder)
+    except OSError:
+        return None

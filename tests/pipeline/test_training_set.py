@@ -23,7 +23,8 @@ def _track(frames: int = 40) -> CameraTrack:
     t = np.linspace(0, 1, frames)[:, None]
     position = np.array([0.0, -3.0, 1.5]) + t * np.array([0.5, 0.0, 0.0])
     look_at = np.tile([0.0, 0.0, 1.3], (frames, 1))
-    return CameraTrack(position, look_at_rotation(position, look_at), np.full(frames, 50.0), look_at, (36, 20.25))
+    rotation = look_at_rotation(position, look_at)
+    return CameraTrack(position, rotation, np.full(frames, 50.0), look_at, (36, 20.25))
 
 
 def test_strength_grades_how_far_a_negative_is_off():

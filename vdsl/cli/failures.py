@@ -10,6 +10,7 @@ from pathlib import Path
 import typer
 
 from ranker.errors import RankerError
+from runtime.raster.device import DeviceError
 
 from ..pipeline.script import ScriptError
 from .check import MACHINE, WRONG, stop
@@ -28,7 +29,7 @@ def failures_told(file: Path, format: str = "text") -> Iterator[None]:
         raise typer.Exit(WRONG) from None
     except KeyboardInterrupt:
         stop("interrupted; the last good build is as it was", INTERRUPTED)
-    except RankerError as error:
+    except (RankerError, DeviceError) as error:
         stop(str(error), MACHINE)
     except MemoryError:
         stop("not enough memory; try fewer --proposals or a smaller --size", MACHINE)

@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 from runtime.video import write_video
 
 from ..propose.story import propose
-from ..propose.types import ProposalGrid
+from ..propose.types import CameraProposal, ProposalGrid
 from .compile import Act, stage_acts
 from .filming import SEGMENTS, Camerawork
 from .judging import DiscriminatorJudge
@@ -32,6 +32,7 @@ SCHEMA = "vds.bench/1"
 _REPEATS = 3
 _SHOTS = 4  # shots of the script that the single stages are measured on
 _SIZE = (1280, 720)
+_JUDGED = 48  # proposals of each of those shots that are drawn for the judge
 
 
 @dataclass(frozen=True)
@@ -67,7 +68,7 @@ def measure(
     said("frames at 720p")
     render, encoded = _takes(acts, grids, camerawork)
     said("the discriminator")
-    shots = _ranked(frames, device)
+    shots = _ranked(tuple(c for g in grids for c in g.cameras[:_JUDGED]), frames, device)
     seconds, peak = None, None
     if whole:
         said("a whole compilation")
@@ -107,7 +108,7 @@ def _rank_frames(
     def work() -> int:
         drawn.clear()
         for act, grid in zip(acts, grids, strict=True):
-            cameras = grid.cameras[:48]
+            cameras = grid.cameras[:_JUDGED]
             drawn.append(camerawork.judge_frames(act.staged, "board", grid.story, cameras))
         return SEGMENTS * sum(len(d) for d in drawn)
 
@@ -131,7 +132,7 @@ def _takes(acts: list[Act], grids: list[ProposalGrid], camerawork: Camerawork) -
     return _rate(render), _rate(encode)
 
 
-def _ranked(frames: NDArray[np.uint8], device: str) -> float | None:
+def _ranked(cameras: tuple[CameraProposal, ...], frames: NDArray[np.uint8], device: str) -> float | None:
     from ranker import RankerError
 
     try:
@@ -140,7 +141,7 @@ def _ranked(frames: NDArray[np.uint8], device: str) -> float | None:
         return None
 
     def work() -> int:
-        judge.scores((), frames[:32])
+        judge.scores(cameras[:32], frames[:32])
         return len(frames[:32])
 
     return _rate(work)

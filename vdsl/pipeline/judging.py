@@ -40,10 +40,18 @@ class GeometryJudge:
         return np.array([geometry_score(c.measures) for c in cameras])
 
 
-class DiscriminatorJudge:
-    """The shot ranking discriminator: p_b of the paper's section 3.3.
+#: How much a full point of the geometry score moves the odds of a take, in logits: as a prior, it breaks
+#: what the pictures leave nearly even. About the spread of the discriminator's own logits over a shot.
+_PRIOR = 10.0
+_PRIOR_MIDDLE = 0.75
 
-    Raises :class:`ranker.RankerError` if the weights are missing or unreadable.
+
+class DiscriminatorJudge:
+    """The shot ranking discriminator (p_b of the paper's section 3.3), with measured geometry as prior.
+
+    The score is the probability whose log odds are the discriminator's plus ``_PRIOR`` times how far the
+    geometry score is above the middle. Raises :class:`ranker.RankerError` if the weights are missing or
+    unreadable.
     """
 
     name = "ranker"
@@ -61,4 +69,6 @@ class DiscriminatorJudge:
         if frames is None:
             raise ValueError("the discriminator judges by frames")
         # From the logit: p_b itself runs out of digits near 1.
-        return np.asarray(1.0 / (1.0 + np.exp(-self._ranker.score(frames).margin.astype(np.float64))))
+        logit = self._ranker.score(frames).margin.astype(np.float64)
+        prior = np.array([geometry_score(c.measures) for c in cameras]) - _PRIOR_MIDDLE
+        return np.asarray(1.0 / (1.0 + np.exp(-(logit + _PRIOR * prior))))

@@ -141,6 +141,8 @@ def test_asked_to_stop_it_cleans_up_and_leaves_the_last_good_build(tmp_path: Pat
         cwd=tmp_path,
         stderr=subprocess.PIPE,
         text=True,
+        # whoever starts the tests in the background may have had Ctrl-C ignored
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
     )
     deadline = time.monotonic() + 60
     while not list(tmp_path.glob(".out.new-*")) and running.poll() is None and time.monotonic() < deadline:

@@ -162,7 +162,7 @@ def test_a_file_that_cannot_be_read_is_the_machines_fault(
     def vanished(*_: object) -> None:
         raise FileNotFoundError(2, "No such file or directory", str(script))
 
-    monkeypatch.setattr(sys.modules["vdsl.cli.check"], "read_source", vanished)
+    monkeypatch.setattr(sys.modules["vdsl.pipeline.script"], "read_source", vanished)
     result = vdsc("check", script)
     assert result.exit_code == 3
     assert "cannot read" in result.stderr

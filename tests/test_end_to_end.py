@@ -118,6 +118,20 @@ def test_the_same_text_and_seed_give_the_same_bytes_and_another_seed_others(buil
     assert _documents(folder / "other") != _documents(folder / "out")
 
 
+def test_the_discriminator_judges_the_same_way_twice(built):
+    folder, _, _ = built
+    settings = Settings(proposals=6, takes=2)
+    for name in ("judged", "judged-again"):
+        vdsl.compile(folder / "story.vds", folder / name, settings, device="cpu")
+    assert _documents(folder / "judged") == _documents(folder / "judged-again")
+    document = json.loads((folder / "judged" / "storyboard.json").read_text())
+    scores = [take["score"] for shot in document["shots"] for take in shot["takes"]]
+    assert len(set(scores)) == 4
+    assert all(0.0 < score < 1.0 for score in scores)
+    report = json.loads((folder / "judged" / "report.json").read_text())
+    assert next(s["count"] for s in report["stages"] if s["name"] == "rank") == 12
+
+
 def test_the_command_line_wins_over_the_header(built):
     folder, _, _ = built
     done = run("compile", folder / "story.vds", "-o", folder / "cli", "--takes", "1", "--proposals", "4",

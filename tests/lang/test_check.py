@@ -223,6 +223,26 @@ def test_options_of_the_line_hold_for_all_its_cameras() -> None:
     assert line.shots[1].focus.path == ("ben",)
 
 
+def test_manner_and_feelings_are_read() -> None:
+    b = board(HEAD + "(anna walk briskly to counter)\n(anna drunk wave)\n(anna wave)\n")
+    assert [line.beats[0].manner for line in b.lines] == ["briskly", "drunk", ""]
+    assert b.lines[0].beats[0].target is not None
+    b = board(
+        HEAD + "(anna wave) feeling sad\n    / (static) feeling angry, feeling ben afraid\n    / (push)\n"
+    )
+    first, second = b.lines[0].shots
+    assert first.feelings == (("anna", "angry"), ("ben", "afraid"))
+    assert second.feelings == (("anna", "sad"),)  # of the line, for all its cameras
+
+
+@pytest.mark.parametrize("posture", ["standing", "kneeling", "crouching", "lying"])
+def test_people_are_placed_in_postures(posture: str) -> None:
+    head = HEAD.replace("anna at door", f"anna at door {posture}", 1)
+    assert head != HEAD
+    (scene,) = board(head + "(anna wave)\n").scenes
+    assert scene.placements[0].posture == posture
+
+
 def test_transitions_join_a_line_to_the_one_before() -> None:
     b = board(
         HEAD

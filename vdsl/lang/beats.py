@@ -1,12 +1,16 @@
 """The words of one ``(char do sth)`` into a :class:`vdsl.lang.ir.Beat`.
 
 The first word is the character; the longest run after it that is an action is the action; what is
-left are one or two targets, the second after a word like ``to`` or ``with``.
+left are one or two targets, the second after a word like ``to`` or ``with``. A word for the manner
+(``briskly``) may stand anywhere after the character.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
+
+from runtime.motion.manner import MANNERS
 
 from . import ast, words
 from .catalog import CatalogLike
@@ -35,6 +39,7 @@ class BeatReader:
 
     def read(self, node: ast.BeatNode) -> Beat | None:
         character = self._character(node)
+        node, manner = self._manner(node)
         if len(node.words) < 2:
             self.report.error(
                 "VDS070",
@@ -57,7 +62,7 @@ class BeatReader:
             if target.kind == "character" and target.path[0] == character:
                 self.report.error("VDS075", target.span, label=f"{character} cannot do this to themselves")
                 return None
-        return Beat(character, action, first, second, node.span)
+        return Beat(character, action, first, second, node.span, manner)
 
     # -- who and what ----------------------------------------------------------------
 
@@ -67,6 +72,19 @@ class BeatReader:
             return word.text
         unknown_character(word, self.characters, self.report)
         return None
+
+    def _manner(self, node: ast.BeatNode) -> tuple[ast.BeatNode, str]:
+        """The beat without its word for the manner, and that word."""
+        said = [w for w in node.words[1:] if w.text not in self.characters and words.fold(w.text) in MANNERS]
+        for more in said[1:]:
+            self.report.error(
+                "VDS260",
+                more.span,
+                label=f"`{said[0].text}` already says how it is done",
+                notes=[(said[0].span, "first here")],
+            )
+        rest = tuple(w for w in node.words if not any(w is s for s in said))
+        return replace(node, words=rest), words.fold(said[0].text) if said else ""
 
     def _action(self, node: ast.BeatNode) -> tuple[str | None, int]:
         """The action, and how many words it took."""

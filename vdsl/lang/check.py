@@ -386,6 +386,7 @@ class _Checker:
             done,
             self._subject(done, stage),
             lambda name: self._someone_or_something(name, stage),
+            tuple(self.characters),
         )
         shots = read_shots(node, context, self.defaults, self.ids, self.report)
         self.lines.append(StoryLine(stage.index, done, shots, self.joins.give(), node.span))

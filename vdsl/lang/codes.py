@@ -621,6 +621,18 @@ CODES: dict[str, Code] = {
         "no room to stand here",
         "To be placed at something there must be free floor beside it: a circle of half a metre.",
     ),
+    "VDS260": Code(
+        "two manners",
+        "A person does one thing in one manner: `briskly` or `sadly`, not both.",
+        "(anna walk briskly sadly door)",
+        "(anna walk briskly door)",
+    ),
+    "VDS261": Code(
+        "whose feeling?",
+        "On an establishing shot nobody acts, so a feeling there has to say whose it is.",
+        "/ (wide) feeling sad",
+        "/ (wide) feeling anna sad",
+    ),
     # -- filming it (VDS190-199) -------------------------------------------------------------
     "VDS190": Code(
         "no camera could film this",

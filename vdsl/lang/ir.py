@@ -65,7 +65,7 @@ class Placement:
     character: str
     at: Target
     facing: Target | None
-    posture: str  # standing | sitting
+    posture: str  # standing | sitting | kneeling | crouching | lying
     span: Span = field(compare=False, repr=False)
 
 
@@ -86,13 +86,17 @@ class Scene:
 
 @dataclass(frozen=True)
 class Beat:
-    """One ``(char do sth)``; several joined by ``+`` run at once."""
+    """One ``(char do sth)``; several joined by ``+`` run at once.
+
+    manner: how it is done (a word of :data:`runtime.motion.manner.MANNERS`), "" where nothing was said
+    """
 
     character: str
     action: str
     target: Target | None
     second: Target | None
     span: Span = field(compare=False, repr=False)
+    manner: str = ""
 
 
 @dataclass(frozen=True)
@@ -104,6 +108,7 @@ class Shot:
     lens: focal length range in mm; ease: λ choices; duration: seconds or None for the action's own
     focus: the character or object the camera is about; None only where nobody is in the scene
     speed: action speed factor (1 as recorded)
+    feelings: what shows on faces, as (character, word of :data:`runtime.motion.feelings.FEELINGS`)
     """
 
     id: str
@@ -123,6 +128,7 @@ class Shot:
     speed: float
     style: str
     span: Span = field(compare=False, repr=False)
+    feelings: tuple[tuple[str, str], ...] = ()
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+
+from runtime.motion.feelings import FEELINGS
 
 from . import ast, words
 from .diagnostics import Report, listing, nearest
@@ -33,6 +35,7 @@ class ShotOptions:
     takes: int | None = None
     speed: float | None = None
     style: str | None = None
+    feelings: list[tuple[ast.Name | None, str]] = field(default_factory=list)
 
 
 def read_options(options: tuple[ast.Option, ...], fps: tuple[int, int], report: Report) -> ShotOptions:
@@ -41,6 +44,9 @@ def read_options(options: tuple[ast.Option, ...], fps: tuple[int, int], report: 
     seen: dict[str, ast.Option] = {}
     for option in options:
         name = words.fold(option.name.text)
+        if name == "feeling":
+            _feeling(option, found, report)
+            continue
         reader = _READERS.get(name)
         if reader is None:
             _unknown(option, report)
@@ -63,6 +69,32 @@ def read_options(options: tuple[ast.Option, ...], fps: tuple[int, int], report: 
     return found
 
 
+def _feeling(option: ast.Option, found: ShotOptions, report: Report) -> None:
+    """``feeling angry`` of whoever acts first, ``feeling ben afraid`` of somebody else; once for each."""
+    values = option.values
+    if not 1 <= len(values) <= 2:
+        span = option.name.span if not values else values[2].span
+        report.error(
+            "VDS052",
+            span,
+            label="`feeling` takes a word, or a name and a word",
+            help="as in `feeling angry` or `feeling ben afraid`",
+        )
+        return
+    who = values[0] if len(values) == 2 else None
+    if who is not None and not isinstance(who, ast.Name):
+        _no_value(who, "a name", "feeling ben afraid", report)
+        return
+    word = _choose(values[-1], dict.fromkeys(FEELINGS), "feeling", report)
+    if word is None:
+        return
+    if any((who and who.text) == (name and name.text) for name, _ in found.feelings):
+        whose = f"the feeling of {who.text}" if who is not None else "`feeling`"
+        report.error("VDS051", option.span, label=f"{whose} is said twice on this line")
+        return
+    found.feelings.append((who, word))
+
+
 def _unknown(option: ast.Option, report: Report) -> None:
     name = option.name.text
     folded = words.fold(name)
@@ -74,12 +106,13 @@ def _unknown(option: ast.Option, report: Report) -> None:
             help="camera words stand in parentheses after the slash: `/ (static close-up eye-level)`",
         )
         return
-    meant = nearest(name, _READERS)
+    known = (*_READERS, "feeling")
+    meant = nearest(name, known)
     report.error(
         "VDS050",
         option.name.span,
         label=f"there is no option `{name}`",
-        help=f"options are {listing(_READERS, 20, last='and')}; a time alone is the duration",
+        help=f"options are {listing(known, 20, last='and')}; a time alone is the duration",
         suggestion=meant,
         fix=meant,
     )

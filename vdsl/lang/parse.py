@@ -20,6 +20,8 @@ from .layout import Line, cut
 from .source import Source, Span
 from .syntax_errors import explain_syntax, unknown_statement
 
+#: What follows the name where a line says where somebody is.
+_PLACING = re.compile(r"[ \t]+(?:at|on|in|facing|sitting|standing|kneeling|crouching|lying)\b")
 _FIRST_WORD = re.compile(r"[^\W\d][\w-]*")
 _FIRST_WORDS = re.compile(r"([^\W\d][\w-]*)(?:[ \t]+\"?([^\W\d][\w-]*))?")
 _HEADERS = ("fps", "size", "aspect", "seed", "rig", "style", "takes", "proposals")
@@ -121,7 +123,7 @@ class _Reader:
             return "definition_file"
         if kind is not None:
             return kind
-        if word and re.match(r"[ \t]+(?:at|on|in|facing|sitting|standing)\b", text[word.end() :]):
+        if word and _PLACING.match(text, word.end()):
             return "placement"
         unknown_statement(
             Span(self.source, line.start, line.end), word.group() if word else None, self.report

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from . import ast, words
+from .beats import unknown_character
 from .camera import FREE, CameraWords, read_camera
 from .diagnostics import Report
 from .ids import Ids
 from .ir import MOVEMENT_FAMILIES, Beat, Shot, Target
 from .options import ShotOptions, read_options
+from .source import Span
 
 DEFAULT_LENS = (30.0, 80.0)  # the paper's, section 3.2
 DEFAULT_PROPOSALS = 80
@@ -33,13 +35,14 @@ class LineContext:
     """What a line's shots need to know of it.
 
     subject: whom the camera is about unless told otherwise, None where nobody is there
-    resolve: finds the target of ``focus``
+    resolve: finds the target of ``focus``; cast: everybody of the storyboard
     """
 
     scene: str
     beats: tuple[Beat, ...]
     subject: Target | None
     resolve: Callable[[ast.Name], Target | None]
+    cast: tuple[str, ...] = ()
 
 
 def read_shots(
@@ -56,7 +59,9 @@ def read_shots(
         base = _line_words(context)
         if len(cameras) > 1:
             base = [*base, *_camera_words(said)]
-        shots.append(_shot(ids.take(base), node, camera, said, own, shared, context, defaults))
+        feelings = _feelings(shared, context, node.span, report) | _feelings(own, context, node.span, report)
+        shot = _shot(ids.take(base), node, camera, said, own, shared, context, defaults)
+        shots.append(replace(shot, feelings=tuple(feelings.items())))
     return tuple(shots)
 
 
@@ -115,6 +120,26 @@ def _shot(
         style=own.style or shared.style or defaults.style,
         span=span,
     )
+
+
+def _feelings(options: ShotOptions, context: LineContext, span: Span, report: Report) -> dict[str, str]:
+    """Whose face shows what."""
+    found: dict[str, str] = {}
+    for who, word in options.feelings:
+        if who is None and not context.beats:
+            report.error(
+                "VDS261",
+                span,
+                label="nobody acts on this line",
+                help=f"say whose: `feeling NAME {word}`",
+            )
+            continue
+        name = who.text if who is not None else context.beats[0].character
+        if who is not None and name not in context.cast:
+            unknown_character(who, context.cast, report)
+            continue
+        found[name] = word
+    return found
 
 
 def _line_words(context: LineContext) -> list[str]:

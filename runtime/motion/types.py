@@ -21,8 +21,20 @@ Point = tuple[float, float, float]
 #: point between two people where hands meet.
 BODY_PLACES = (
     *("mouth", "ear", "chin", "chest", "hip", "head", "heart", "belly", "eyes", "elbow", "lap", "front"),
+    *("knee", "thigh", "shoulder", "neck", "cheek", "forehead", "back"),
 )
-REACH_PLACES = ("target", "second", "meet", *BODY_PLACES)
+#: Places on the other person's body, written ``partner.shoulder`` in a reach; for a left hand those on
+#: the side that is before it.
+PARTNER_PLACES = ("shoulder", "hand", "back", "waist", "head", "cheek", "chest", "elbow", "belly")
+#: ``clasp`` is where two people's hands hold each other, ``floor`` the floor before one, ``held`` the thing
+#: in the other hand.
+REACH_PLACES = (
+    *("target", "second", "meet", "clasp", "floor", "held"),
+    *BODY_PLACES,
+    *(f"partner.{p}" for p in PARTNER_PLACES),
+)
+#: How a body may be between two shots, and the ones it may be left in besides.
+POSTURES = ("standing", "sitting", "kneeling", "crouching", "lying", "floor", "one-knee", "prone", "fours")
 #: Where eyes may rest: ``partner`` is the other person of the action, ``held`` the thing in the hand.
 GAZE_PLACES = ("target", "second", "partner", "held", "ahead", "down", "up", "aside", "around")
 #: Which hand an entry means; resolved when the action is performed.
@@ -34,7 +46,9 @@ class ActorState:
     """Where and how a person is between two shots.
 
     position: point on the floor below the hips; heading: radians
-    posture: ``standing`` or ``sitting``; seat: middle of the seat's surface while sitting
+    posture: one of :data:`POSTURES`; ``floor`` sits on the ground, ``lying`` is on the back (the head away
+        from the heading), ``prone`` on the belly
+    seat: middle of the surface sat or lain on
     held: (hand, object id) for each thing in a hand
     """
 
@@ -122,6 +136,7 @@ class Reach:
     hand: one of :data:`HANDS`; to: one of :data:`REACH_PLACES`
     offset: metres ahead of, to the outside of and above the place, seen from the person
     palm: where the palm faces: ``side`` (inward), ``down``, ``up``
+    shake: metres up and down while there, ``times`` times; along: metres along the held thing, for ``held``
     """
 
     hand: str
@@ -132,6 +147,9 @@ class Reach:
     end: float
     offset: Point = (0.0, 0.0, 0.0)
     palm: str = "side"
+    shake: float = 0.0
+    times: float = 0.0
+    along: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -176,6 +194,51 @@ class Talk:
 
 
 @dataclass(frozen=True)
+class Drive:
+    """A hinged or sliding part (``target`` or ``second``) moves to ``openness`` 0..1 between two times."""
+
+    target: str
+    openness: float
+    start: float
+    end: float
+
+
+@dataclass(frozen=True)
+class FootMove:
+    """A foot (``left`` or ``right``) leaves the floor at ``start`` and lands at ``end``; the body follows.
+
+    ahead, out: where it lands, metres before and to its own side of where it stood; turn: radians to the left
+    lift: how much higher it is swung, metres
+    """
+
+    foot: str
+    start: float
+    end: float
+    ahead: float = 0.0
+    out: float = 0.0
+    turn: float = 0.0
+    lift: float = 0.0
+
+
+@dataclass(frozen=True)
+class Jump:
+    """Off the floor from ``start`` to ``end``, ``height`` metres up (0: as the time in the air makes it).
+
+    feet: ``both``, or the one foot that hops; ahead, aside (to the left): metres travelled; turn: radians
+    tuck: metres the feet are drawn up below the body
+    """
+
+    feet: str
+    start: float
+    end: float
+    height: float = 0.0
+    ahead: float = 0.0
+    aside: float = 0.0
+    turn: float = 0.0
+    tuck: float = 0.0
+
+
+@dataclass(frozen=True)
 class Timeline:
     """Everything one person does in a clip."""
 
@@ -186,6 +249,32 @@ class Timeline:
     tilts: tuple[Tilt, ...] = ()
     gazes: tuple[Gaze, ...] = ()
     talks: tuple[Talk, ...] = ()
+    drives: tuple[Drive, ...] = ()
+    steps: tuple[FootMove, ...] = ()
+    jumps: tuple[Jump, ...] = ()
+
+
+@dataclass(frozen=True)
+class GaitStyle:
+    """What is particular about a way of walking. Metres (for a person of 1.7 m) and radians.
+
+    lift: how much higher feet are swung; bounce: up and down at every step; sway: from side to side
+    lean: forward; crouch: lower; arms: factor on their swing; width: factor on the distance of the feet
+    limp: share by which the left leg is spared; toes: 0..1, on tiptoe; stiff: 0..1, no roll of the foot
+    facing: where the face looks on the way: ``ahead``, ``back``, ``left`` or ``right``
+    """
+
+    lift: float = 0.0
+    bounce: float = 0.0
+    sway: float = 0.0
+    lean: float = 0.0
+    crouch: float = 0.0
+    arms: float = 1.0
+    width: float = 1.0
+    limp: float = 0.0
+    toes: float = 0.0
+    stiff: float = 0.0
+    facing: str = "ahead"
 
 
 @dataclass(frozen=True)
@@ -193,7 +282,8 @@ class Variant:
     """One way to do an action.
 
     duration: seconds of the clip's own part; tempo and amplitude are already worked in
-    stride: factor on the step length and cadence of walking there: (length, cadence)
+    stride: factor on the step length and the time between steps of walking there: (length, time)
+    gait: what is particular about walking there
     partner: what the other person of the action does meanwhile (empty: goes on idling)
     """
 
@@ -202,17 +292,22 @@ class Variant:
     timeline: Timeline
     partner: Timeline = field(default_factory=Timeline)
     stride: tuple[float, float] = (1.0, 1.0)
+    gait: GaitStyle = field(default_factory=GaitStyle)
 
 
 @dataclass(frozen=True)
 class ActionClip:
     """An action ready to be performed.
 
-    travel: ``none``, ``walk`` or ``run``: how one gets there when a path is given
+    travel: ``none``, ``walk``, ``run``, ``skip`` or ``crawl``: how one gets there when a path is given
     seat: ``down`` sits on the target's seat, ``up`` stands up, ``keep`` leaves the posture as it is
     needs: ``target``/``second``/``any``: that thing has to be in a hand first; ``none``
     faces: what the body turns to before it begins: ``target``, ``second``, ``away`` or ``none``
     lead: whether the clip also plays while walking there (a talk on the way) rather than after it
+    feeling: what shows on the face, a word of :data:`runtime.motion.feelings.FEELINGS`, or ""
+    posture: one of :data:`POSTURES` taken before the clip's own part, "" to stay as one is; posture_time:
+        seconds it takes (0: as long as it naturally does); rises: stands up again afterwards
+    apart: metres between the two people of the action, 0 for talking distance
     """
 
     name: str
@@ -223,6 +318,11 @@ class ActionClip:
     faces: str = "none"
     turn: float = 0.0
     lead: bool = False
+    feeling: str = ""
+    posture: str = ""
+    posture_time: float = 0.0
+    rises: bool = False
+    apart: float = 0.0
 
     def variant(self, name: str) -> Variant:
         """The variant of that name, or the first."""
@@ -242,6 +342,7 @@ class Task:
     fetch: float64 [K, 2] way to the thing the clip needs in a hand, walked before ``path`` (which then starts
         where this ends); no points at all: it is taken from here, before going; None: it is taken on arrival
     fetch_heading: heading to take it with
+    manner: how it is done, a word of :data:`runtime.motion.manner.MANNERS`, or ""
     """
 
     clip: ActionClip
@@ -254,6 +355,7 @@ class Task:
     duration: float | None = None
     fetch: NDArray[np.float64] | None = None
     fetch_heading: float | None = None
+    manner: str = ""
 
 
 @dataclass(frozen=True, eq=False)

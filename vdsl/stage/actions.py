@@ -11,8 +11,12 @@ from collections import defaultdict
 from runtime.motion.types import (
     ActionClip,
     Beat,
+    Drive,
+    FootMove,
+    GaitStyle,
     Gaze,
     Grasp,
+    Jump,
     Reach,
     Talk,
     Tilt,
@@ -20,7 +24,7 @@ from runtime.motion.types import (
     Track,
     Variant,
 )
-from vdsl.lang.definitions.action import ActionDef
+from vdsl.lang.definitions.action import ActionDef, GaitDef
 from vdsl.lang.definitions.timeline import POSED, Key, Move, Part
 
 GRASPS = ("take", "put", "pass")
@@ -29,7 +33,9 @@ GRASPS = ("take", "put", "pass")
 def build_clip(action: ActionDef) -> ActionClip:
     """The clip of an action, with all its variants."""
     variants = tuple(
-        Variant(v.name, v.duration, timeline(v.part), timeline(v.partner), (v.stride, v.cadence))
+        Variant(
+            v.name, v.duration, timeline(v.part), timeline(v.partner), (v.stride, v.cadence), _gait(v.gait)
+        )
         for v in action.variants
     )
     return ActionClip(
@@ -41,7 +47,16 @@ def build_clip(action: ActionDef) -> ActionClip:
         action.faces,
         action.turn,
         action.along,
-    )  # fmt: skip
+        action.feeling,
+        action.posture,
+        action.posture_time,
+        action.rises,
+        action.apart,
+    )
+
+
+def _gait(gait: GaitDef) -> GaitStyle:
+    return GaitStyle(**dict(gait.values), facing=gait.facing)
 
 
 def timeline(part: Part) -> Timeline:
@@ -60,14 +75,17 @@ def timeline(part: Part) -> Timeline:
         tilts=tuple(_tilt(m) for m in by_kind["tip"]),
         gazes=tuple(Gaze(m.words[0], m.times[0], m.times[1], m.numbers[0]) for m in by_kind["gaze"]),
         talks=tuple(Talk(m.times[0], m.times[1], m.numbers[0]) for m in by_kind["talk"]),
+        drives=tuple(Drive(m.words[0], m.numbers[0], m.times[0], m.times[1]) for m in by_kind["drive"]),
+        steps=tuple(FootMove(m.words[0], *m.times, *m.numbers) for m in by_kind["step"]),
+        jumps=tuple(Jump(m.words[0], *m.times, *m.numbers) for m in by_kind["jump"]),
     )
 
 
 def _reach(move: Move) -> Reach:
     hand, to, palm = move.words
     start, arrive, leave, end = move.times
-    ahead, out, above = move.numbers
-    return Reach(hand, to, start, arrive, leave, end, (ahead, out, above), palm)
+    ahead, out, above, shake, times, along = move.numbers
+    return Reach(hand, to, start, arrive, leave, end, (ahead, out, above), palm, shake, times, along)
 
 
 def _tilt(move: Move) -> Tilt:

@@ -27,9 +27,32 @@ __all__ = [
 ]
 
 TARGET_KINDS = ("place", "object", "character")
-SETTINGS = ("target", "second", "duration", "travel", "stride", "cadence", "sit", "needs", "faces", "turn",
-            "along", "hold", "partner", "variant")  # fmt: skip
-CHANGES = ("amplitude", "tempo", "mirror", "duration", "stride", "cadence", "instead", "partner")
+SETTINGS = ("target", "second", "duration", "travel", "stride", "cadence", "gait", "sit", "posture", "needs",
+            "faces", "turn", "apart", "along", "hold", "feeling", "group", "example", "partner",
+            "variant")  # fmt: skip
+CHANGES = ("amplitude", "tempo", "mirror", "duration", "stride", "cadence", "gait", "instead", "partner")
+TRAVELS = ("none", "walk", "run", "skip", "crawl")
+#: Which drawer of the library an action lies in.
+GROUPS = ("going", "posture", "gesture", "hand", "social", "emotion", "sport", "work", "music", "talk")
+POSTURES = ("standing", "sitting", "kneeling", "crouching", "lying", "floor", "one-knee", "prone", "fours")
+FEELINGS = ("neutral", "happy", "sad", "angry", "afraid", "surprised", "disgusted")
+#: What may be said of a gait, with the kind of value and what it is until said.
+GAIT: dict[str, tuple[str, float]] = {
+    "lift": ("length", 0.0), "bounce": ("length", 0.0), "sway": ("angle", 0.0), "lean": ("angle", 0.0),
+    "crouch": ("length", 0.0), "arms": ("number", 1.0), "width": ("number", 1.0), "limp": ("number", 0.0),
+    "toes": ("number", 0.0), "stiff": ("number", 0.0),
+}  # fmt: skip
+
+
+@dataclass(frozen=True)
+class GaitDef:
+    """What is particular about a way of walking: values by the names of :data:`GAIT`.
+
+    facing: where the face looks on the way: ahead, back, left or right
+    """
+
+    values: tuple[tuple[str, float], ...] = ()
+    facing: str = "ahead"
 
 
 @dataclass(frozen=True)
@@ -42,6 +65,7 @@ class VariantDef:
     partner: Part
     stride: float
     cadence: float
+    gait: GaitDef
 
 
 @dataclass(frozen=True)
@@ -49,9 +73,15 @@ class ActionDef(DefinitionBase):
     """An action.
 
     target, second: none, optional or required; target_kinds, second_kinds: of place, object, character
-    travels: whether it may begin with getting there; travel: none, walk or run
+    travels: whether it may begin with getting there; travel: one of :data:`TRAVELS`
     sit: down, up or keep; needs: target, second, any or none has to be in a hand
     faces: target, second or none; turn: radians to turn by without a target; along: also while walking
+    posture: one of :data:`POSTURES` to take first, "" to stay as one is; posture_time: seconds for it, 0 for
+        as long as it takes; rises: stands up again at the end
+    apart: metres between two people, 0 for talking distance; feeling: what shows on the face, "" for nothing
+    group: one of :data:`GROUPS`, "" where it is not said
+    example: a line that shows it, as in the language, anna acting and ben the other; props: names of the
+        props it needs
     """
 
     target: str
@@ -66,6 +96,14 @@ class ActionDef(DefinitionBase):
     turn: float
     along: bool
     variants: tuple[VariantDef, ...]
+    posture: str = ""
+    posture_time: float = 0.0
+    rises: bool = False
+    apart: float = 0.0
+    feeling: str = ""
+    group: str = ""
+    example: str = ""
+    props: tuple[str, ...] = ()
 
 
 def read_action(definition: ast.Definition, report: Report) -> ActionDef | None:
@@ -96,7 +134,7 @@ def read_action(definition: ast.Definition, report: Report) -> ActionDef | None:
     part = replace(part, hold="hold" in settings)
     partner = _partner(settings.get("partner"), duration, report)
     stride, cadence = _share(settings.get("stride")), _share(settings.get("cadence"))
-    plain = VariantDef("plain", duration, part, partner, stride, cadence)
+    plain = VariantDef("plain", duration, part, partner, stride, cadence, _gait(settings.get("gait")))
     all_variants = [plain, *(_variant(r, plain, moves, report) for r in variants)]
     action = _settings(definition, settings, tuple(all_variants))
     for reader in (*settings.values(), *variants):
@@ -113,16 +151,39 @@ def _settings(
     needs = ("none", "optional", "required")
     kinds = {n: _kinds(settings[n]) if n in settings else () for n in ("target", "second")}
     target, second = word("target", "none", needs), word("second", "none", needs)
-    travel = word("travel", "walk", ("none", "walk", "run"))
+    travel = word("travel", "walk", TRAVELS)
     turn = settings["turn"].value_angle(0) if "turn" in settings else 0.0
     if "hold" in settings:
         settings["hold"].values()
+    posture, example = settings.get("posture"), settings.get("example")
     return ActionDef(
         definition.name.text, (), definition.span, target, kinds["target"], second, kinds["second"],
         travel != "none", travel, word("sit", "keep", ("down", "up", "keep")),
         word("needs", "none", ("none", "target", "second", "any")),
         word("faces", "none", ("none", "target", "second")), turn, "along" in settings, variants,
+        posture=word("posture", "", POSTURES),
+        posture_time=posture.seconds("in", 0.0) if posture is not None else 0.0,
+        rises=posture.flag("back") if posture is not None else False,
+        apart=settings["apart"].value_length(0) if "apart" in settings else 0.0,
+        feeling=word("feeling", "", FEELINGS),
+        group=word("group", "", GROUPS),
+        example=example.value_text(0) if example is not None else "",
+        props=example.words("with") if example is not None else (),
     )  # fmt: skip
+
+
+def _gait(reader: Reader | None, base: GaitDef | None = None) -> GaitDef:
+    """``gait lift 10cm, sway 5deg, facing back``: on top of what the action says already."""
+    base = base if base is not None else GaitDef()
+    if reader is None:
+        return base
+    values = dict(base.values)
+    for name, (kind, _) in GAIT.items():
+        value = getattr(reader, kind)(name, None)
+        if value is not None:
+            values[name] = value
+    facing = reader.word("facing", base.facing, ("ahead", "back", "left", "right"))
+    return GaitDef(tuple(sorted(values.items())), facing)
 
 
 def _kinds(reader: Reader) -> tuple[str, ...]:
@@ -161,6 +222,7 @@ def _variant(reader: Reader, plain: VariantDef, base: tuple[ast.Entry, ...], rep
         part = mirrored(part)
     stride = _share(changes["stride"]) if "stride" in changes else plain.stride
     cadence = _share(changes["cadence"]) if "cadence" in changes else plain.cadence
+    gait = _gait(changes.get("gait"), plain.gait)
     for change in changes.values():
         change.done()
-    return VariantDef(name, duration / max(tempo, 0.2), part, partner, stride, cadence)
+    return VariantDef(name, duration / max(tempo, 0.2), part, partner, stride, cadence, gait)

@@ -18,8 +18,9 @@ from .reader import Reader, unknown_entry
 
 HANDS = ("left", "right", "near", "other", "holding", "free")
 BODY_PLACES = ("mouth", "ear", "chin", "chest", "hip", "head", "heart", "belly", "eyes", "elbow", "lap",
-               "front")  # fmt: skip
-REACHABLE = ("target", "second", "meet", *BODY_PLACES)
+               "front", "knee", "thigh", "shoulder", "neck", "cheek", "forehead", "back")  # fmt: skip
+PARTNER_PLACES = ("shoulder", "hand", "back", "waist", "head", "cheek", "chest", "elbow", "belly")
+REACHABLE = ("target", "second", "meet", "clasp", "floor", "held", "partner", *BODY_PLACES)
 GAZES = ("target", "second", "partner", "held", "ahead", "down", "up", "aside", "around")
 PALMS = ("side", "down", "up")
 #: Parts there are one of, and their axes with the kind of value.
@@ -49,7 +50,9 @@ POSED: dict[str, dict[str, float]] = {
 }
 LATERAL = frozenset({"body.side", "body.twist", "head.turn", "head.tilt", "eyes.turn", "hips.shift",
                      "hips.turn"})  # fmt: skip
-MOVES = ("at", "beat", "reach", "take", "put", "pass", "tip", "gaze", "talk")
+MOVES = ("at", "beat", "reach", "take", "put", "pass", "tip", "gaze", "talk", "step", "jump", "drive")
+#: Moves in which numbers change their sign when an action is mirrored: their places.
+_MIRRORED = {"step": (2,), "jump": (2, 3)}
 
 
 @dataclass(frozen=True)
@@ -63,10 +66,10 @@ class Key:
 
 @dataclass(frozen=True)
 class Move:
-    """Anything with a span in time: ``kind`` is beat, reach, take, put, pass, tip, gaze or talk.
+    """Anything with a span in time: ``kind`` is one of :data:`MOVES`, without ``at``.
 
-    times: rising shares of the clip; one for take, put and pass, two for beat, gaze and talk, four for
-        reach and tip (leaves, is there, leaves again, is back)
+    times: rising shares of the clip; one for take, put and pass, four for reach and tip (leaves, is there,
+        leaves again, is back), two for the others
     words: what it is about: channel / hand and place / hand / place; numbers: amplitude, count … by kind
     """
 
@@ -193,6 +196,8 @@ def _move(reader: Reader, kind: str, duration: float, report: Report) -> Move | 
         )
     if kind == "beat":
         return _beat(reader, _rising(reader, when("from", 0.0), when("to", 1.0)))
+    if kind in ("step", "jump", "drive"):
+        return _footwork(reader, kind, _rising(reader, when("from", 0.0), when("to", 1.0)))
     start = when("from", 0.0)
     arrive = when("at", min(start + 0.3, 1.0))
     leave = when("until", max(arrive, 0.7))
@@ -201,9 +206,30 @@ def _move(reader: Reader, kind: str, duration: float, report: Report) -> Move | 
     if kind == "tip":
         return Move(kind, times, (hand,), (reader.value_angle(1),)) if hand else None
     to = reader.value_word(1, None, REACHABLE)
+    if to == "partner":
+        part = reader.value_word(2, None, PARTNER_PLACES)
+        to = f"partner.{part}" if part else ""
     palm = reader.word("palm", "side", PALMS)
-    offset = tuple(reader.length(n, 0.0) for n in ("ahead", "out", "above"))
-    return Move(kind, times, (hand, to, palm), offset) if hand and to else None
+    numbers = [reader.length(n, 0.0) for n in ("ahead", "out", "above", "shake")]
+    numbers += [reader.number("times", 3.0 if numbers[3] else 0.0), reader.length("along", 0.0)]
+    return Move(kind, times, (hand, to, palm), tuple(numbers)) if hand and to else None
+
+
+def _footwork(reader: Reader, kind: str, times: tuple[float, ...]) -> Move | None:
+    """``step left, ahead 40cm``, ``jump 30cm, ahead 1m`` and ``drive target 100%``."""
+    if kind == "step":
+        foot = reader.value_word(0, None, ("left", "right"))
+        numbers = [reader.length("ahead", 0.0), reader.length("out", 0.0), reader.angle("turn", 0.0)]
+        return Move(kind, times, (foot,), (*numbers, reader.length("lift", 0.0))) if foot else None
+    if kind == "jump":
+        height = reader.value_length(0, 0.0)
+        feet = reader.word("on", "both", ("both", "left", "right"))
+        along = [reader.length(n, 0.0) for n in ("ahead", "aside")]
+        return Move(
+            kind, times, (feet,), (height, *along, reader.angle("turn", 0.0), reader.length("tuck", 0.0))
+        )
+    to = reader.value_word(0, None, ("target", "second"))
+    return Move(kind, times, (to,), (reader.value_number(1),)) if to else None
 
 
 def _beat(reader: Reader, times: tuple[float, ...]) -> Move | None:
@@ -280,5 +306,6 @@ def mirrored(part: Part) -> Part:
                 replace(m, words=(channel(m.words[0]),), numbers=(sign * m.numbers[0], *m.numbers[1:]))
             )
         else:
-            moves.append(replace(m, words=tuple(swap.get(w, w) for w in m.words)))
+            numbers = tuple(-x if k in _MIRRORED.get(m.kind, ()) else x for k, x in enumerate(m.numbers))
+            moves.append(replace(m, words=tuple(swap.get(w, w) for w in m.words), numbers=numbers))
     return replace(part, keys=keys, moves=tuple(moves))

@@ -52,7 +52,7 @@ def test_parameters_know_their_words() -> None:
 @pytest.mark.parametrize(
     ("body", "code", "place", "suggestion"),
     [
-        ("    hat red", "VDS160", "hat", None),
+        ("    tail red", "VDS160", "tail", None),
         ("    haircolor red", "VDS160", "haircolor", "hair-color"),
         ("    skin crimsn", "VDS026", "crimsn", None),
         ("    bottom turqoise", "VDS026", "turqoise", "turquoise"),

@@ -113,7 +113,7 @@ def top(f: Figure) -> list[Piece]:
         "coat": _coat,
         "dress": _dress,
     }
-    return makers[f.spec.top](f)
+    return makers.get(f.spec.top, _shirt)(f)
 
 
 def _tshirt(f: Figure) -> list[Piece]:

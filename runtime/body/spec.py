@@ -18,10 +18,26 @@ BUILDS: dict[str, float] = {
     "stocky": 0.7,
     "heavy": 0.95,
 }
-HAIR_STYLES = ("bob", "short", "crop", "long", "ponytail", "bun", "curly", "afro", "bald", "tonsure")
-FACIAL_HAIR = ("none", "moustache", "beard", "stubble")
-TOP_KINDS = ("tshirt", "shirt", "sweater", "blazer", "coat", "dress")
-BOTTOM_KINDS = ("trousers", "skirt", "shorts")
+HAIR_STYLES = (
+    "bob", "short", "crop", "long", "ponytail", "bun", "curly", "afro", "bald", "tonsure",
+    "pixie", "wavy", "braids", "locs", "mohawk", "topknot",
+)  # fmt: skip
+FACIAL_HAIR = ("none", "moustache", "beard", "stubble", "goatee", "long-beard")
+TOP_KINDS = (
+    "tshirt", "shirt", "sweater", "blazer", "coat", "dress", "tank", "hoodie", "suit", "jacket", "uniform",
+    "lab-coat", "chef-jacket", "scrubs", "tunic", "robe", "gown", "kimono", "armour", "spacesuit",
+)  # fmt: skip
+BOTTOM_KINDS = ("trousers", "skirt", "shorts", "long-skirt", "pencil-skirt", "overalls")
+SHOE_KINDS = ("shoes", "boots")
+HATS = (
+    "none", "cap", "police-cap", "beanie", "beret", "brimmed-hat", "straw-hat", "toque", "hard-hat",
+    "fire-helmet", "helmet", "crown", "tiara", "tricorn", "wizard-hat", "nurse-cap", "scrub-cap", "hood",
+    "veil", "knight-helmet", "space-helmet",
+)  # fmt: skip
+#: Worn around the neck, over the clothes, on the back.
+NECKWEAR = ("none", "tie", "bow-tie", "scarf", "stethoscope")
+OVERWEAR = ("none", "apron", "vest", "waistcoat")
+BACKWEAR = ("none", "backpack", "cape")
 
 Colour = tuple[float, float, float]
 
@@ -30,6 +46,11 @@ _WORDS = {
     "facial_hair": FACIAL_HAIR,
     "top": TOP_KINDS,
     "bottom": BOTTOM_KINDS,
+    "shoes": SHOE_KINDS,
+    "hat": HATS,
+    "neck": NECKWEAR,
+    "over": OVERWEAR,
+    "back": BACKWEAR,
 }
 
 
@@ -38,8 +59,9 @@ class BodySpec:
     """One person.
 
     height: metres, standing, to the crown; build: 0 thin .. 1 heavy; femininity: 0 .. 1; age: years
-    colours: sRGB 0..1 triples; ``hair``, ``facial_hair``, ``top`` and ``bottom``: words of the tuples above
+    colours: sRGB 0..1 triples; ``hair``, ``facial_hair``, ``top`` … ``back``: words of the tuples above
     shirt_color: what shows under an open blazer or coat
+    accent_color: tie, scarf, apron, vest, cape, pack and the trimmings of uniforms and robes
     """
 
     height: float = 1.72
@@ -57,7 +79,17 @@ class BodySpec:
     shirt_color: Colour = (0.93, 0.92, 0.88)
     bottom: str = "trousers"
     bottom_color: Colour = (0.17, 0.22, 0.38)
+    shoes: str = "shoes"
     shoes_color: Colour = (0.14, 0.13, 0.14)
+    hat: str = "none"
+    hat_color: Colour = (0.17, 0.22, 0.38)
+    neck: str = "none"
+    over: str = "none"
+    back: str = "none"
+    belt: bool = False
+    gloves: bool = False
+    badge: bool = False
+    accent_color: Colour = (0.66, 0.16, 0.18)
 
     def __post_init__(self) -> None:
         for name, low, high in (

@@ -16,23 +16,36 @@ _COLOURS = {
     "shirt": "shirt_color",
     "bottom": "bottom_color",
     "shoes": "shoes_color",
+    "hat-color": "hat_color",
+    "accent": "accent_color",
 }
+_WORDS = {
+    "hair": "hair",
+    "facial-hair": "facial_hair",
+    "top-kind": "top",
+    "bottom-kind": "bottom",
+    "shoes-kind": "shoes",
+    "hat": "hat",
+    "neck": "neck",
+    "over": "over",
+    "back": "back",
+}
+_SWITCHES = ("glasses", "belt", "gloves", "badge")
 
 
 def body_spec(cast: CastDef, arguments: Mapping[str, float | str] | None = None) -> BodySpec:
     """The body of one person. Arguments are taken as checked; a number out of bounds is brought within."""
     look = cast.features(dict(arguments or {}))
     colours = {field: _colour(str(look[name]), name) for name, field in _COLOURS.items()}
+    words = {field: str(look[name]) for name, field in _WORDS.items()}
+    switches = {name: look[name] == "yes" for name in _SWITCHES}
     return BodySpec(
         height=_number("height", look["height"], {}),
         build=_number("build", look["build"], BUILDS),
         femininity=_number("body", look["body"], BODIES),
         age=_number("age", look["age"], AGES),
-        hair=str(look["hair"]),
-        facial_hair=str(look["facial-hair"]),
-        glasses=look["glasses"] == "yes",
-        top=str(look["top-kind"]),
-        bottom=str(look["bottom-kind"]),
+        **words,
+        **switches,
         **colours,
     )
 

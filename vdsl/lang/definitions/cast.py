@@ -1,8 +1,8 @@
 """Cast: from the definition of a kind of person to what is known of one.
 
 ``cast NAME(parameters) { entries }``: a parameter or an entry named like a feature of
-:mod:`vdsl.lang.definitions.looks` sets that feature; an entry's value may name a parameter. Assumes a
-parsed definition; guarantees that a mistake is reported at its place and its feature left at its default.
+:mod:`vdsl.lang.definitions.looks` sets that feature; an entry's value may name a parameter. A feature
+named by neither is a parameter all the same, so that anybody may wear anything. Assumes a parsed definition; guarantees that a mistake is reported at its place and its feature left at its default.
 """
 
 from __future__ import annotations
@@ -35,20 +35,34 @@ DEFAULTS: dict[str, float | str] = {
     "bottom": "navy",
     "bottom-kind": "trousers",
     "shoes": "black",
+    "shoes-kind": "shoes",
+    "hat": "none",
+    "hat-color": "navy",
+    "neck": "none",
+    "over": "none",
+    "back": "none",
+    "belt": "no",
+    "gloves": "no",
+    "badge": "no",
+    "accent": "crimson",
 }
 
 
 @dataclass(frozen=True)
 class CastDef(DefinitionBase):
-    """A kind of person as defined; ``body``: its entries."""
+    """A kind of person as defined.
+
+    body: its entries; own: how many of the parameters are written in its head (entries may name these)
+    """
 
     body: tuple[ast.Entry, ...] = field(compare=False, repr=False)
+    own: int = 0
 
     def features(
         self, arguments: Mapping[str, float | str] | None = None, report: Report | None = None
     ) -> dict[str, float | str]:
         """Every feature of one person: words, and numbers in metres and years."""
-        env = parameter_env(self.parameters, arguments)
+        env = parameter_env(self.parameters[: self.own], arguments)
         report = Report() if report is None else report
         return _features(self.body, self.parameters, arguments or {}, env, report)
 
@@ -77,9 +91,19 @@ def read_cast(definition: ast.Definition, report: Report) -> CastDef | None:
                 kind = "length" if spec.name == "height" else "word"
                 checked = ParameterSpec(spec.name, kind, DEFAULTS[spec.name], FEATURES[spec.name])
         parameters.append(checked)
-    made = CastDef(definition.name.text, tuple(parameters), definition.span, definition.body)
+    own = len(parameters)
+    said = {p.name for p in parameters} | {e.head.text for e in definition.body}
+    parameters += [_unsaid(name) for name in FEATURES if name not in said]
+    made = CastDef(definition.name.text, tuple(parameters), definition.span, definition.body, own)
     made.features(report=report)
     return made
+
+
+def _unsaid(name: str) -> ParameterSpec:
+    """The parameter of a feature that a definition does not mention."""
+    if name == "height":
+        return ParameterSpec(name, "length", DEFAULTS[name])
+    return ParameterSpec(name, "word", DEFAULTS[name], FEATURES[name], NUMBERS.get(name))
 
 
 def _out_of_range(name: str, value: float, kind: str) -> tuple[str, str] | None:
@@ -114,7 +138,7 @@ def _features(
                 "VDS160",
                 entry.head.span,
                 label=f"people have no `{name}`",
-                help=f"there are {listing(FEATURES, 20)}",
+                help=f"there are {listing(FEATURES, 30)}",
                 suggestion=nearest(name, FEATURES),
             )
             continue

@@ -6,7 +6,19 @@ on top of those. A colour text such as ``"#c33a2b"`` does everywhere.
 
 from __future__ import annotations
 
-from runtime.body.spec import AGES, BOTTOM_KINDS, BUILDS, FACIAL_HAIR, HAIR_STYLES, TOP_KINDS
+from runtime.body.spec import (
+    AGES,
+    BACKWEAR,
+    BOTTOM_KINDS,
+    BUILDS,
+    FACIAL_HAIR,
+    HAIR_STYLES,
+    HATS,
+    NECKWEAR,
+    OVERWEAR,
+    SHOE_KINDS,
+    TOP_KINDS,
+)
 
 from .colours import COLOURS, Colour, colour
 
@@ -59,6 +71,16 @@ FEATURES: dict[str, tuple[str, ...] | None] = {
     "bottom": CLOTH_WORDS,
     "bottom-kind": BOTTOM_KINDS,
     "shoes": CLOTH_WORDS,
+    "shoes-kind": SHOE_KINDS,
+    "hat": HATS,
+    "hat-color": CLOTH_WORDS,
+    "neck": NECKWEAR,
+    "over": OVERWEAR,
+    "back": BACKWEAR,
+    "belt": YES_NO,
+    "gloves": YES_NO,
+    "badge": YES_NO,
+    "accent": CLOTH_WORDS,
 }
 #: Features that may also be a number, with the numbers allowed.
 NUMBERS: dict[str, tuple[float, float]] = {

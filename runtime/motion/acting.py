@@ -289,7 +289,7 @@ class Performer:
 
     def _shortage(self, tracks: HandTracks) -> Array:
         """[2, T]: how far each hand's place is out of the arm's reach, by the reach's weight."""
-        rotation = self.figure.hands.facing(self.yaw, tracks.inward, tracks.pitch, tracks.tilt)
+        rotation = tracks.rotation(self.figure.hands)
         wrist = tracks.position(self.figure) - turned(rotation, self.figure.hands.offset)
         d = norm(wrist - self.figure.shoulders())
         return np.asarray(np.maximum(d - 0.925 * self.figure.arm_length, 0.0) * tracks.weight)
@@ -298,7 +298,7 @@ class Performer:
         """Poses arms and hands; returns the palms [2, T, 3]."""
         tracks = contacts.tracks
         pose = self.arm_pose(tracks.carry)
-        rotation = self.figure.hands.facing(self.yaw, tracks.inward, tracks.pitch, tracks.tilt)
+        rotation = tracks.rotation(self.figure.hands)
         goals = HandGoals(tracks.position(self.figure), tracks.weight, rotation, tracks.turning)
         palms = self.figure.arms(pose, goals, self.yaw)
         self.goal_rotation = rotation
@@ -308,7 +308,9 @@ class Performer:
         curl = relaxed + tracks.grip * (0.62 - relaxed)
         curl = curl + weight * (c.pair("fingers", "curl") - curl) + c.pair("fingers", "curl+")
         point = weight * c.pair("fingers", "point")
-        self.figure.fingers(np.clip(curl, 0.0, 1.0), np.clip(point, 0, 1), np.clip(0.35 + 0.6 * curl, 0, 1))
+        thumb = np.clip(0.35 + 0.6 * curl, 0.0, 1.0)
+        thumb = thumb - (0.8 + thumb) * np.clip(weight * c.pair("fingers", "thumb"), 0.0, 1.0)
+        self.figure.fingers(np.clip(curl, 0.0, 1.0), np.clip(point, 0, 1), thumb)
         return palms
 
     def face(self) -> None:

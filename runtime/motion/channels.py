@@ -8,9 +8,12 @@ head: nod (down), turn (left), tilt (left);  eyes: turn (left), down;  lids: clo
 hips: drop, shift (left), forward (metres), turn (left)
 arm: weight 0..1 how far the pose replaces the resting one; swing (forward), out (sideways), twist
     (inward), bend (elbow), wrist (towards the palm), side (towards the thumb), turn (palm down/back)
-fingers: weight, curl 0..1, point 0..1;  shoulder: up, forward
+fingers: weight, curl 0..1, point 0..1, thumb 0..1 (stands off);  shoulder: up, forward
 brow: up -1..1, knit 0..1;  mouth: smile -1..1;  jaw: open 0..1
 foot: forward, out, lift (metres), pitch (heel up);  knees: spread
+hand: ahead, out, above (metres): shifts the place the hand reaches to
+wield: weight, and how what the hand holds points: pitch (up), inward, roll (its top to the middle), grip
+    (between the fingers and the thing: 0 along them, about 1 as a hammer is held)
 """
 
 from __future__ import annotations
@@ -37,10 +40,12 @@ CENTRE = {
 }
 SIDED = {
     "arm": ("weight", "swing", "out", "twist", "bend", "wrist", "side", "turn"),
-    "fingers": ("weight", "curl", "point"),
+    "fingers": ("weight", "curl", "point", "thumb"),
     "shoulder": ("up", "forward"),
     "brow": ("up", "knit"),
     "foot": ("forward", "out", "lift", "pitch"),
+    "hand": ("ahead", "out", "above"),
+    "wield": ("weight", "pitch", "inward", "roll", "grip"),
 }
 #: Channels that change sign when an action is mirrored.
 LATERAL = frozenset(
@@ -48,11 +53,13 @@ LATERAL = frozenset(
 )
 ARM = SIDED["arm"]
 FINGERS = SIDED["fingers"]
+#: Parts whose keys are weighted poses.
+POSED = ("arm", "fingers", "wield")
 _SOFT = {"arm", "body", "head", "shoulder", "hips"}
 
 
 class Channels:
-    """Values of all channels over T frames: additive ones as [T], arms and fingers as weighted poses."""
+    """Values of all channels over T frames: additive ones as [T], :data:`POSED` ones as weighted poses."""
 
     def __init__(self, frames: int) -> None:
         self._zero = np.zeros(frames)
@@ -119,7 +126,7 @@ class Channels:
         for name, value in found.items():
             head, axis = name.split(".")
             part, _, side = head.partition("_")
-            if part in ("arm", "fingers"):
+            if part in POSED:
                 poses.setdefault((part, side), {})[axis] = value
             else:
                 self.add(name, value)

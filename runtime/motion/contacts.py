@@ -9,9 +9,11 @@ from numpy.typing import NDArray
 
 from runtime.body.skeleton import JOINT, Skeleton
 
+from .channels import SIDED, Channels
 from .curves import plateau, ramp
 from .figure import Figure
-from .rotations import rot_z, rot_zyx, wrap
+from .hands import MIRROR, Hands
+from .rotations import blend, rot_y, rot_z, rot_zyx, turned, wrap
 from .types import Reach
 
 Array = NDArray[np.float64]
@@ -21,6 +23,7 @@ _LIE: dict[str, tuple[float, float, float]] = {
     "mouth": (1.05, 0.75, 0.0), "ear": (0.2, 1.5, 0.0), "chin": (0.75, 0.95, 0.2), "chest": (1.2, 0.15, 0.0),
     "hip": (1.0, -0.45, 0.5), "head": (0.8, 1.1, 0.9), "heart": (1.3, 0.2, 0.0), "belly": (1.3, 0.0, 0.0),
     "eyes": (1.1, 0.8, 0.0), "elbow": (1.4, 0.1, 0.2), "lap": (0.35, -0.15, 1.35), "front": (0.25, 0.0, 0.0),
+    "floor": (0.25, -0.6, 0.0), "held": (0.5, 0.0, 0.0),
 }  # fmt: skip
 _PALM = {"side": 0.0, "down": 1.45, "up": -1.3}
 
@@ -56,6 +59,11 @@ def body_place(figure: Figure, place: str, hand: int, yaw: Array) -> Array:
         out: Array = hip + 0.62 * (knee - hip)
         out[:, 2] += 0.062 * h
         return out
+    if place == "floor":
+        feet = [figure.position[:, JOINT[f"foot_{s}"]] for s in "lr"]
+        middle: Array = 0.5 * (feet[0] + feet[1])
+        middle[:, 2] = np.minimum(feet[0][:, 2], feet[1][:, 2]) - bind[JOINT["foot_l"]][2]
+        return middle
     hip_y = bind[JOINT["thigh_l"]][1]
     return figure.point("hips", np.array([0.035 * h, m * (hip_y + 0.055 * h), 0.035 * h]))
 
@@ -81,6 +89,20 @@ class Held:
         return float(np.arctan2(d[1], d[0]))
 
     @property
+    def ahead(self) -> Array:
+        """[3, 3]: its own coordinates to those in which it points along X: from the handle on to its middle,
+        its front (-Y) where it is held around the middle."""
+        to = float(np.arctan2(-self.grip[1], -self.grip[0])) if self.handle else -np.pi / 2
+        return np.asarray(rot_z(np.array(-to)))
+
+    @property
+    def point(self) -> Array:
+        """From the grip to its far end, [3] in its own coordinates: as far beyond the middle as the handle is
+        before it; the foot of what stands."""
+        flat = np.array([-2.0 * self.grip[0], -2.0 * self.grip[1], 0.0])
+        return flat if self.handle else np.array([0.0, 0.0, -self.grip[2]])
+
+    @property
     def rim(self) -> Array:
         """From the grip to the rim it is poured from or drunk from, [3] in its own coordinates."""
         top = float(np.clip(self.grip[2], 0.03, 0.2))
@@ -97,7 +119,8 @@ class Held:
 class Layer:
     """A hand's wish: weight [T]; the place is a point [T, 3] or a body place; angles as in ``Hands.facing``.
 
-    led: the thing of which a part, not the palm, is to be there: its ``rim``, ``spout`` or ``foot``
+    led: the thing of which a part, not the palm, is to be there: its ``rim``, ``spout``, ``foot`` or
+        ``point``; with the place ``held``: the thing in the other hand
     """
 
     hand: int
@@ -106,6 +129,32 @@ class Layer:
     offset: Array
     angles: tuple[float, float, float]
     led: tuple[Held, str] | None = None
+
+    @property
+    def place_of(self) -> str:
+        """The word of the place, empty for a point in the world."""
+        return self.place if isinstance(self.place, str) else ""
+
+
+@dataclass(frozen=True, eq=False)
+class Wield:
+    """How held things point, and where hands are shifted to. All [2, T], shift [2, T, 3]: ahead, left, up."""
+
+    weight: Array
+    pitch: Array
+    inward: Array
+    roll: Array
+    grip: Array
+    shift: Array
+
+    @staticmethod
+    def of(channels: Channels) -> Wield:
+        """As keys have it."""
+        ahead, out, above = (
+            channels.pair("hand", axis) + channels.pair("hand", axis + "+") for axis in SIDED["hand"]
+        )
+        poses = (channels.pair("wield", axis) + channels.pair("wield", axis + "+") for axis in SIDED["wield"])
+        return Wield(*poses, np.stack([ahead, MIRROR * out, above], axis=-1))
 
 
 class HandTracks:
@@ -123,9 +172,11 @@ class HandTracks:
         tilt: tuple[Array, Array],
         layers: list[Layer],
         skeleton: Skeleton,
+        wield: Wield,
     ) -> None:
         shape = carry.shape
         self.t, self.yaw, self.carry, self.layers, self.skeleton = t, yaw, carry, layers, skeleton
+        self.wield = wield
         self.weight = np.zeros(shape)
         self.turning = carry.copy()
         self.inward = np.full(shape, 0.55)
@@ -157,21 +208,47 @@ class HandTracks:
         out = figure.shoulders()
         total = np.zeros(self.weight.shape)
         cos, sin = np.cos(self.yaw), np.sin(self.yaw)
-        for layer in self.layers:
+        shift = turned(rot_z(self.yaw)[None], self.wield.shift)
+        for layer in sorted(self.layers, key=lambda x: x.place_of == "held"):
             k, w = layer.hand, layer.weight
-            at = body_place(figure, layer.place, k, self.yaw) if isinstance(layer.place, str) else layer.place
-            ahead, outward, up = layer.offset
-            left = outward * (1.0 - 2.0 * k)
-            at = at + np.stack(
-                [ahead * cos - left * sin, ahead * sin + left * cos, np.full_like(cos, up)], axis=1
-            )
-            if layer.led is not None:
-                at = at - self._to_part(k, *layer.led)
+            if layer.place_of == "held" and layer.led is not None:
+                at = out[1 - k] + self._on_held(1 - k, layer.led[0], layer.offset)
+            else:
+                place = layer.place
+                at = body_place(figure, place, k, self.yaw) if isinstance(place, str) else place
+                ahead, outward, up = layer.offset
+                left = outward * (1.0 - 2.0 * k)
+                at = at + np.stack(
+                    [ahead * cos - left * sin, ahead * sin + left * cos, np.full_like(cos, up)], axis=1
+                )
+                if layer.led is not None:
+                    at = at - self._to_part(k, *layer.led)
+            at = at + shift[k]
             over = w + total[k] * (1 - w)
             share = w / np.maximum(over, 1e-6)
             out[k] += share[:, None] * (at - out[k])
             total[k] = over
         return out
+
+    def rotation(self, hands: Hands) -> Array:
+        """Hands' rotations [2, T, 3, 3] as wished."""
+        natural = hands.facing(self.yaw, self.inward, self.pitch, self.tilt)
+        share = self.wield.weight
+        if not share.any():
+            return natural
+        gripping = self._wielded() @ rot_y(self.wield.grip)
+        return blend(natural, hands.turned_by(gripping), share)
+
+    def _wielded(self) -> Array:
+        """[2, T, 3, 3]: the frames, ahead along X, of what is wielded."""
+        w = self.wield
+        return np.asarray(rot_zyx(self.yaw[None] - MIRROR * w.inward, -w.pitch, MIRROR * w.roll))
+
+    def _on_held(self, k: int, held: Held, offset: Array) -> Array:
+        """[T, 3]: from the palm ``k`` to a place on what it holds: ahead along it, out, and above."""
+        ahead, out, up = offset
+        inside = held.ahead.T @ np.array([ahead, out * (2.0 * k - 1.0), up])
+        return np.asarray(self.held_rotation(k, held) @ inside)
 
     def hand_yaw(self, k: int) -> Array:
         """Heading of a hand's fingers [T]."""
@@ -187,6 +264,8 @@ class HandTracks:
         turned = self.held_rotation(k, held)
         if part == "foot":
             return np.asarray(turned @ -held.grip)
+        if part == "point":
+            return np.asarray(turned @ held.point)
         if part == "rim":
             return np.asarray(turned @ held.rim)
         to = turned @ held.spout
@@ -200,7 +279,9 @@ class HandTracks:
         yaw = float(self.hand_yaw(k)[since])
         turn = float(wrap(yaw - held.axis_yaw)) if held.handle else 0.0
         share = ramp(self.t, held.since, held.since + 0.6)
-        return np.asarray(self._up(k) @ rot_z(turn * share - yaw) @ held.rotation)
+        natural = np.asarray(self._up(k) @ rot_z(turn * share - yaw) @ held.rotation)
+        weight = self.wield.weight[k]
+        return blend(natural, self._wielded()[k] @ held.ahead, weight) if weight.any() else natural
 
 
 @dataclass(frozen=True, eq=False)

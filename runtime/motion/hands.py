@@ -48,6 +48,11 @@ class Hands:
         """
         return np.asarray(rot_zyx(heading[None] - MIRROR * inward, -pitch, MIRROR * tilt) @ self._basis)
 
+    def turned_by(self, rotation: Array) -> Array:
+        """World rotation of both hands that lie, fingers along X and thumb along Z, in the given frames
+        [2, T, 3, 3]."""
+        return np.asarray(rotation @ self._basis)
+
     def bent(self, turn: Array, side: Array, wrist: Array) -> Array:
         """Rotation of each hand against its forearm [2, T, 3, 3] in the bind frame, by angles [2, T]."""
         turned = rotation(self.fingers * (MIRROR * turn)[..., None])

@@ -207,7 +207,13 @@ def _take_needed(plan: Plan, task: Task, props: dict[int, PropState]) -> None:
     grip = prop.world_from_object @ np.array([*prop.grip, 1.0])
     at = TargetPoint((float(grip[0]), float(grip[1]), float(grip[2])), need.gaze, need.object)
     duration = PICK_TIME / task.speed
-    window = _play(plan, PICK, plan.route.now, duration, replace(task, target=at, second=None))
+    pick = PICK
+    side = task.clip.needs_hand
+    if side and side[0] not in plan.held:
+        pick = replace(
+            PICK, reaches=(replace(PICK.reaches[0], hand=side),), grasps=(Grasp("take", side, 0.6),)
+        )
+    window = _play(plan, pick, plan.route.now, duration, replace(task, target=at, second=None))
     plan.route.now = window.start + duration
 
 

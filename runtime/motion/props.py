@@ -58,6 +58,7 @@ def track_prop(
         wished = tracks[hold.person].held_rotation(k, held)
         hand = figures[hold.person].rotation[:, JOINT[f"hand_{hold.hand}"]]
         turned = hand @ np.swapaxes(goals[hold.person][k], -1, -2) @ wished
+        turned = blend(turned, wished, tracks[hold.person].wield.weight[k])
         at = palms[hold.person][k] - turned @ grip
         share = ramp(t, hold.start - 0.04, hold.start + 0.26)
         position = position + share[:, None] * (at - position)

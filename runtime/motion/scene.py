@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .acting import Performer, fade, relative_gaze
-from .contacts import SIDE, Contacts, HandTracks, Held, Layer, holding_weight, reach_layer
+from .contacts import SIDE, Contacts, HandTracks, Held, Layer, Wield, holding_weight, reach_layer
 from .curves import plateau, wander
 from .face import GazePull
 from .plan import Event, Plan, Window
@@ -144,7 +144,8 @@ class Scene:
                 layer = self._reach(performer, window, reach)
                 if layer is not None:
                     layers.append(layer)
-        return HandTracks(t, performer.yaw, carry, (tilt, dip), layers, performer.skeleton)
+        wield = Wield.of(performer.channels)
+        return HandTracks(t, performer.yaw, carry, (tilt, dip), layers, performer.skeleton, wield)
 
     def _reach(self, performer: Performer, window: Window, reach: Reach) -> Layer | None:
         side = window.hands[reach.hand]
@@ -180,6 +181,12 @@ class Scene:
             if held is not None and tipped:
                 led = (held, "rim")
                 extra[0] = 0.03
+        if reach.lead == "point" and held is not None:
+            led = (held, "point")
+        if reach.to == "held":
+            other = self._held(performer.plan.name, "lr"[1 - k], arrive + 1e-3)
+            led, place = (None, None) if other is None else ((other, "along"), place)
+            extra[0 if other is not None and other.handle else 2] += reach.along
         if place is None:
             return None
         xy, heading = performer.plan.route.root(np.array([arrive]))

@@ -137,6 +137,7 @@ class Reach:
     offset: metres ahead of, to the outside of and above the place, seen from the person
     palm: where the palm faces: ``side`` (inward), ``down``, ``up``
     shake: metres up and down while there, ``times`` times; along: metres along the held thing, for ``held``
+    lead: what is to be there: the ``palm``, or the far end (``point``) of what the hand holds
     """
 
     hand: str
@@ -150,6 +151,7 @@ class Reach:
     shake: float = 0.0
     times: float = 0.0
     along: float = 0.0
+    lead: str = "palm"
 
 
 @dataclass(frozen=True)
@@ -308,6 +310,7 @@ class ActionClip:
     posture: one of :data:`POSTURES` taken before the clip's own part, "" to stay as one is; posture_time:
         seconds it takes (0: as long as it naturally does); rises: stands up again afterwards
     apart: metres between the two people of the action, 0 for talking distance
+    needs_hand: ``left`` or ``right`` where what it needs has to be in that hand, "" for either
     """
 
     name: str
@@ -323,6 +326,7 @@ class ActionClip:
     posture_time: float = 0.0
     rises: bool = False
     apart: float = 0.0
+    needs_hand: str = ""
 
     def variant(self, name: str) -> Variant:
         """The variant of that name, or the first."""

@@ -52,6 +52,7 @@ def build_clip(action: ActionDef) -> ActionClip:
         action.posture_time,
         action.rises,
         action.apart,
+        action.needs_hand,
     )
 
 
@@ -82,10 +83,10 @@ def timeline(part: Part) -> Timeline:
 
 
 def _reach(move: Move) -> Reach:
-    hand, to, palm = move.words
+    hand, to, palm, lead = move.words
     start, arrive, leave, end = move.times
     ahead, out, above, shake, times, along = move.numbers
-    return Reach(hand, to, start, arrive, leave, end, (ahead, out, above), palm, shake, times, along)
+    return Reach(hand, to, start, arrive, leave, end, (ahead, out, above), palm, shake, times, along, lead)
 
 
 def _tilt(move: Move) -> Tilt:

@@ -79,7 +79,7 @@ class ActionDef(DefinitionBase):
     posture: one of :data:`POSTURES` to take first, "" to stay as one is; posture_time: seconds for it, 0 for
         as long as it takes; rises: stands up again at the end
     apart: metres between two people, 0 for talking distance; feeling: what shows on the face, "" for nothing
-    group: one of :data:`GROUPS`, "" where it is not said
+    needs_hand: left or right, "" for either; group: one of :data:`GROUPS`, "" where it is not said
     example: a line that shows it, as in the language, anna acting and ben the other; props: names of the
         props it needs
     """
@@ -104,6 +104,7 @@ class ActionDef(DefinitionBase):
     group: str = ""
     example: str = ""
     props: tuple[str, ...] = ()
+    needs_hand: str = ""
 
 
 def read_action(definition: ast.Definition, report: Report) -> ActionDef | None:
@@ -169,6 +170,7 @@ def _settings(
         group=word("group", "", GROUPS),
         example=example.value_text(0) if example is not None else "",
         props=example.words("with") if example is not None else (),
+        needs_hand=settings["needs"].word("in", "", ("left", "right")) if "needs" in settings else "",
     )  # fmt: skip
 
 
@@ -177,13 +179,19 @@ def _gait(reader: Reader | None, base: GaitDef | None = None) -> GaitDef:
     base = base if base is not None else GaitDef()
     if reader is None:
         return base
-    values = dict(base.values)
+    values, facing = dict(base.values), base.facing
+    sides = ("ahead", "back", "left", "right")
+    if reader.count:  # the first pair stands as values, the rest as options
+        first = reader.value_word(0, None, (*GAIT, "facing"))
+        if first == "facing":
+            facing = reader.value_word(1, None, sides) or facing
+        elif first:
+            values[first] = getattr(reader, f"value_{GAIT[first][0]}")(1)
     for name, (kind, _) in GAIT.items():
         value = getattr(reader, kind)(name, None)
         if value is not None:
             values[name] = value
-    facing = reader.word("facing", base.facing, ("ahead", "back", "left", "right"))
-    return GaitDef(tuple(sorted(values.items())), facing)
+    return GaitDef(tuple(sorted(values.items())), reader.word("facing", facing, sides))
 
 
 def _kinds(reader: Reader) -> tuple[str, ...]:

@@ -23,6 +23,7 @@ PARTNER_PLACES = ("shoulder", "hand", "back", "waist", "head", "cheek", "chest",
 REACHABLE = ("target", "second", "meet", "clasp", "floor", "held", "partner", *BODY_PLACES)
 GAZES = ("target", "second", "partner", "held", "ahead", "down", "up", "aside", "around")
 PALMS = ("side", "down", "up")
+LEADS = ("palm", "point")
 #: Parts there are one of, and their axes with the kind of value.
 CENTRE: dict[str, dict[str, str]] = {
     "body": {"lean": "angle", "side": "angle", "twist": "angle", "bow": "angle"},
@@ -38,15 +39,18 @@ CENTRE: dict[str, dict[str, str]] = {
 SIDED: dict[str, dict[str, str]] = {
     "arm": {"swing": "angle", "out": "angle", "twist": "angle", "bend": "angle", "wrist": "angle",
             "side": "angle", "turn": "angle"},
-    "fingers": {"curl": "number", "point": "number"},
+    "fingers": {"curl": "number", "point": "number", "thumb": "number"},
     "shoulder": {"up": "angle", "forward": "angle"},
     "brow": {"up": "number", "knit": "number"},
     "foot": {"forward": "length", "out": "length", "lift": "length", "pitch": "angle"},
+    "hand": {"ahead": "length", "out": "length", "above": "length"},
+    "wield": {"pitch": "angle", "inward": "angle", "roll": "angle", "grip": "angle"},
 }  # fmt: skip
 #: Poses that replace the resting one rather than add to it, and what their axes are until said.
 POSED: dict[str, dict[str, float]] = {
     "arm": {"swing": 0.1, "out": 0.2, "twist": 0.2, "bend": 0.3, "wrist": 0.1, "side": 0.0, "turn": 0.3},
-    "fingers": {"curl": 0.3, "point": 0.0},
+    "fingers": {"curl": 0.3, "point": 0.0, "thumb": 0.0},
+    "wield": {"pitch": 0.0, "inward": 0.0, "roll": 0.0, "grip": 1.05},
 }
 LATERAL = frozenset({"body.side", "body.twist", "head.turn", "head.tilt", "eyes.turn", "hips.shift",
                      "hips.turn"})  # fmt: skip
@@ -70,7 +74,8 @@ class Move:
 
     times: rising shares of the clip; one for take, put and pass, four for reach and tip (leaves, is there,
         leaves again, is back), two for the others
-    words: what it is about: channel / hand and place / hand / place; numbers: amplitude, count … by kind
+    words: what it is about: channel / hand, place, palm and lead / hand / place;
+        numbers: amplitude, count … by kind
     """
 
     kind: str
@@ -212,7 +217,8 @@ def _move(reader: Reader, kind: str, duration: float, report: Report) -> Move | 
     palm = reader.word("palm", "side", PALMS)
     numbers = [reader.length(n, 0.0) for n in ("ahead", "out", "above", "shake")]
     numbers += [reader.number("times", 3.0 if numbers[3] else 0.0), reader.length("along", 0.0)]
-    return Move(kind, times, (hand, to, palm), tuple(numbers)) if hand and to else None
+    lead = reader.word("lead", "palm", LEADS)
+    return Move(kind, times, (hand, to, palm, lead), tuple(numbers)) if hand and to else None
 
 
 def _footwork(reader: Reader, kind: str, times: tuple[float, ...]) -> Move | None:
@@ -281,7 +287,7 @@ def _resting(channel: str) -> float | None:
     """A channel's value at rest; None where amplitude has no meaning."""
     head, axis = channel.split(".")
     part = head.partition("_")[0]
-    if axis == "weight" or part == "fingers":
+    if axis == "weight" or part in ("fingers", "wield"):
         return None
     return POSED.get(part, {}).get(axis, 0.0)
 

@@ -25,6 +25,17 @@ MATERIALS = (
     "carpet",
     "concrete",
     "plaster",
+    "water",  # slow swells under a web of light
+    "sand",
+    "stone",  # hewn blocks in a wall, flags on a floor
+    "metal",
+    "leaves",
+    "snow",
+    "earth",
+    "marble",
+    "cobble",
+    "parquet",
+    "plate",  # sheets of metal with seams
 )
 
 

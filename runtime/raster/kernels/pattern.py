@@ -1,7 +1,9 @@
 """Procedural materials, evaluated in the world.
 
 Each gives a factor for the base colour around 1. Joints and grains are filtered by the width of a
-pixel on the surface and fade out before they could shimmer.
+pixel on the surface and fade out before they could shimmer. Indices are those of
+:data:`runtime.mesh.MATERIALS`; 10 and 11 vary so slowly that they are looked up at the ends of a
+stretch of pixels only (:func:`broad_pattern`), 7 and 8 are no surfaces to light at all.
 """
 
 # mypy: ignore-errors
@@ -52,6 +54,31 @@ def fade(blur, period):
 
 
 @ti.func
+def grained(material):
+    """Whether a material has a pattern finer than a stretch of pixels."""
+    return material > 0 and (material < 10 or material > 11)
+
+
+@ti.func
+def contour(h, level, width, blur):
+    """Coverage 0..1 of the line on which a noise ``h`` has a ``level``; width, blur: in units of h."""
+    soft = ti.max(blur, 0.3 * width)
+    cover = ti.min(ti.max((0.5 * width - ti.abs(h - level)) / soft + 0.5, 0.0), 1.0)
+    return cover * ti.min(1.0, width / soft)
+
+
+@ti.func
+def bonded(u, v, length, height, gap, blur, varied, dark):
+    """Courses of blocks ``length`` by ``height`` metres, each course shifted: tones, and darker joints."""
+    row = v / height
+    line = ti.floor(row)
+    along = u / length + hashed(ti.cast(line, ti.i32), 11)
+    tone = hashed(ti.cast(line, ti.i32), ti.cast(ti.floor(along), ti.i32))
+    seam = ti.max(joint(row, gap / height, blur / height), joint(along, gap / length, blur / length))
+    return (1.0 + (tone - 0.5) * varied * fade(blur, height)) * (1.0 - dark * seam)
+
+
+@ti.func
 def pattern(material, p, n, blur):
     """Factor of a material at world point ``p``, face normal ``n``; blur: a pixel's width, metres."""
     out = 1.0
@@ -61,7 +88,9 @@ def pattern(material, p, n, blur):
         v = p.z
         if ti.abs(n.x) > ti.abs(n.y):
             u = p.y
-    if material == 1:  # wood
+    if material >= 12:
+        out = ground_pattern(material, p, u, v, upright, blur)
+    elif material == 1:  # wood
         if upright:
             strong = 0.10 * fade(blur, 0.03)
             if strong > 0:
@@ -120,10 +149,102 @@ def pattern(material, p, n, blur):
 
 
 @ti.func
+def ground_pattern(material, p, u, v, upright, blur):
+    """The materials of landscapes, old walls and machines, on the plane (u, v) through ``p``."""
+    out = 1.0
+    if material == 12:  # water: broken strokes of light on slow swells
+        swell = value_noise(p.x * 0.32 + 5.0, p.y * 0.75)
+        wave = value_noise(p.x * 0.85, p.y * 2.3) * 0.7 + value_noise(p.x * 2.3 + 9.0, p.y * 5.0) * 0.3
+        light = contour(wave, 0.56, 0.075, blur * 2.6) + 0.6 * contour(wave, 0.34, 0.05, blur * 2.6)
+        some = ti.min(ti.max((value_noise(p.x * 0.55 + 3.0, p.y * 1.3) - 0.3) * 3.0, 0.0), 1.0)
+        out = 0.97 + (swell - 0.5) * 0.16 + 0.3 * light * some * fade(blur, 0.35)
+    elif material == 13:  # sand: ripples the wind made, and grains
+        drift = value_noise(u * 0.45, v * 0.45)
+        bent = v * 2.6 + 1.6 * value_noise(u * 0.8, v * 0.5) + 0.35 * u
+        crest = ti.abs(bent - ti.floor(bent) - 0.5) * 2.0
+        out = 1.0 + (drift - 0.5) * 0.09 + (crest - 0.5) * 0.12 * fade(blur, 0.38)
+        strong = 0.12 * fade(blur, 0.02)
+        if strong > 0:
+            out += (value_noise(u * 60.0, v * 60.0) - 0.5) * strong
+    elif material == 14:  # stone: hewn blocks in a wall, flags on a floor
+        if upright:
+            out = bonded(u, v, 0.62, 0.31, 0.016, blur, 0.18, 0.28)
+        else:
+            out = bonded(u, v, 0.8, 0.55, 0.014, blur, 0.16, 0.28)
+        strong = 0.07 * fade(blur, 0.1)
+        if strong > 0:
+            out += (value_noise(u * 12.0, v * 12.0) - 0.5) * strong
+    elif material == 15:  # metal: broad slanting sheens, brushed along u
+        sheen = (p.x + p.y) * 0.55 + p.z * 0.8
+        sheen = ti.abs(sheen - ti.floor(sheen) - 0.5) * 2.0
+        sheen = sheen * sheen * (3 - 2 * sheen)
+        out = 0.99 + (sheen - 0.46) * 0.13
+        strong = 0.07 * fade(blur, 0.02)
+        if strong > 0:
+            out += (value_noise(u * 3.0, v * 70.0) - 0.5) * strong
+    elif material == 16:  # leaves: light and dark clumps, the same whichever way a face looks
+        x, y = p.x + 0.45 * p.z, p.y - 0.6 * p.z
+        clump = value_noise(x * 4.2, y * 4.2) * 0.6 + value_noise(x * 10.0 + 3.0, y * 10.0) * 0.4
+        bright = ti.min(ti.max((clump - 0.55) * 9.0, 0.0), 1.0)
+        dark = ti.min(ti.max((0.44 - clump) * 9.0, 0.0), 1.0)
+        out = 1.0 + (0.12 * bright - 0.13 * dark) * fade(blur, 0.2)
+    elif material == 17:  # snow: soft drifts
+        out = 1.0 + (value_noise(u * 0.6, v * 0.6) - 0.5) * 0.07
+        out += (value_noise(u * 2.7, v * 2.7) - 0.5) * 0.045 * fade(blur, 0.3)
+    elif material == 18:  # earth: trodden patches and pebbles
+        broad = value_noise(u * 0.9, v * 0.9)
+        x, y = u * 6.4 + v * 4.8, v * 6.4 - u * 4.8
+        stones = value_noise(x, y) * 0.6 + value_noise(u * 9.0, v * 9.0) * 0.4
+        pebble = ti.min(ti.max((stones - 0.6) * 9.0, 0.0), 1.0)
+        out = 1.0 + (broad - 0.5) * 0.16 + (0.025 - 0.13 * pebble) * fade(blur, 0.12)
+        strong = 0.1 * fade(blur, 0.03)
+        if strong > 0:
+            out += (value_noise(u * 34.0, v * 34.0) - 0.5) * strong
+    elif material == 19:  # marble: veins that run aslant over large slabs
+        x, y = u * 0.83 + v * 0.56, v * 0.83 - u * 0.56
+        warp = value_noise(x * 1.1, y * 1.1)
+        vein = (
+            value_noise(x * 0.5 + 0.5 * warp, y * 2.6 + 1.2 * warp) * 0.8
+            + value_noise(x * 4.0, y * 5.0) * 0.2
+        )
+        strong = contour(vein, 0.5, 0.04, blur * 2.2) + 0.6 * contour(vein, 0.7, 0.04, blur * 2.2)
+        out = 1.02 + (warp - 0.5) * 0.11 - 0.2 * strong * fade(blur, 0.3)
+        seam = ti.max(joint(u / 0.8, 0.01, blur / 0.8), joint(v / 0.8, 0.01, blur / 0.8))
+        out *= 1.0 - 0.2 * seam
+    elif material == 20:  # cobble: small rounded stones in courses
+        row = v / 0.16
+        line = ti.floor(row)
+        along = u / 0.19 + hashed(ti.cast(line, ti.i32), 3)
+        tone = hashed(ti.cast(line, ti.i32), ti.cast(ti.floor(along), ti.i32))
+        x, y = along - ti.floor(along) - 0.5, row - line - 0.5
+        edge = ti.max(ti.abs(x), ti.abs(y)) + 0.35 * (x * x + y * y)
+        soft = ti.max(blur / 0.16, 0.08)
+        seam = ti.min(ti.max((edge - 0.5) / soft + 0.5, 0.0), 1.0)
+        out = 1.05 + ((tone - 0.5) * 0.17 - 0.26 * seam) * fade(blur, 0.17)
+    elif material == 21:  # parquet: squares of four strips, every other one across
+        side = 1.0 / 0.36
+        i, j = ti.floor(u * side), ti.floor(v * side)
+        turned = ti.cast(i + j, ti.i32) & 1
+        strip = (u if turned == 1 else v) * side * 4.0
+        cell = ti.cast(i * 57.0 + j * 131.0, ti.i32)
+        tone = hashed(ti.cast(ti.floor(strip), ti.i32), cell)
+        seam = ti.max(
+            joint(strip, 0.045, blur * side * 4.0),
+            ti.max(joint(u * side, 0.012, blur * side), joint(v * side, 0.012, blur * side)),
+        )
+        out = (1.015 + (tone - 0.5) * 0.13 * fade(blur, 0.12) + (turned - 0.5) * 0.05) * (1.0 - 0.22 * seam)
+    else:  # plate: sheets of metal with seams between them
+        out = bonded(u, v, 1.2, 0.6, 0.016, blur, 0.07, 0.26)
+        sheen = (p.x - p.y) * 0.4 + p.z * 0.6
+        out += (ti.abs(sheen - ti.floor(sheen) - 0.5) - 0.25) * 0.16
+    return out
+
+
+@ti.func
 def broad_pattern(material, p, n):
     """The part of a pattern that is broader than any stretch of pixels; sampled sparsely."""
     out = 1.0
-    if material >= 10:
+    if material == 10 or material == 11:
         u, v = p.x, p.y
         if ti.abs(n.z) < 0.7:
             v = p.z

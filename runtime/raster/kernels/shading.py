@@ -32,7 +32,7 @@ from .geometry import (
     vec3,
 )
 from .light import BLOCK, across, lit, unblocked
-from .pattern import broad_pattern, glazed, pattern
+from .pattern import broad_pattern, glazed, grained, pattern
 
 NOTHING = 0xFFFF0000
 RUN = 16  # pixels; rows are worked through in aligned runs of them
@@ -484,7 +484,7 @@ def shading_kernels(style: Style) -> SimpleNamespace:
                             g1 = q2.cross(cross) * inverse
                             g2 = cross.cross(q1) * inverse
                             p0 -= eye
-                        if 0 < material < 10:
+                        if grained(material):
                             # a pixel's width on the surface at 1 m, tamed at grazing angles
                             ray = first + step * ti.cast(x, ti.f32)
                             cosine = ti.abs(plane.dot(ray)) / ray.norm()
@@ -554,7 +554,7 @@ def shading_kernels(style: Style) -> SimpleNamespace:
                             clear = facing == 0 or (
                                 free and free_end and (end_at - begin_at).norm() < open_reach
                             )
-                        if flat and clear and (material == 0 or material >= 10):
+                        if flat and clear and not grained(material):
                             begin = paint_end
                             if not (joined and painted):
                                 begin = exposed(
@@ -574,7 +574,7 @@ def shading_kernels(style: Style) -> SimpleNamespace:
                             step_shade = (shade_end - shade) * share
                             step_tone = (tone_end - tone) * share
                             step_haze = (haze_end - haze) * share
-                            grained = 0 < material < 10
+                            rough = grained(material)
                             xx = x
                             before = x
                             paint = ti.Vector([0, 0, 0])
@@ -621,7 +621,7 @@ def shading_kernels(style: Style) -> SimpleNamespace:
                                     # the edge of a shadow: pixel by pixel
                                     xx = before + 1
                                 else:
-                                    if grained:
+                                    if rough:
                                         # the pixels after the last one looked up, this one included
                                         key_step = 0.0
                                         begin = xx
@@ -679,7 +679,7 @@ def shading_kernels(style: Style) -> SimpleNamespace:
                                     before = xx
                                     more = xx < stop - 1
                                     xx = ti.min(xx + fine, stop - 1)
-                            if not grained:
+                            if not rough:
                                 picture[at + before - x] = packed(paint)
                                 edge[at + before - x] = mark
                         joined = goes_on

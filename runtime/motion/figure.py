@@ -225,7 +225,8 @@ class Figure:
         return palm
 
     def fingers(self, curl: Array, point: Array, thumb: Array) -> None:
-        """Fingers [2, T]: curl 0 straight .. 1 fist; point: the index stays straight; thumb curls 0..1."""
+        """Fingers [2, T]: curl 0 straight .. 1 fist; point: the index stays straight; thumb curls 0..1,
+        and stands off below 0."""
         first, second = -MIRROR * 1.35 * curl, -MIRROR * 1.7 * curl
         thumbs = rot_x(-MIRROR * 0.55 * thumb) @ rot_z(-MIRROR * 0.35 * thumb)
         self._turn_all(_KNUCKLES, _in_order(rot_x(first), thumbs))

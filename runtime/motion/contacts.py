@@ -13,7 +13,7 @@ from .channels import SIDED, Channels
 from .curves import plateau, ramp
 from .figure import Figure
 from .hands import MIRROR, Hands
-from .rotations import blend, rot_y, rot_z, rot_zyx, turned, wrap
+from .rotations import blend, dot, rot_y, rot_z, rot_zyx, turned, unit, wrap
 from .types import Reach
 
 Array = NDArray[np.float64]
@@ -24,6 +24,9 @@ _LIE: dict[str, tuple[float, float, float]] = {
     "hip": (1.0, -0.45, 0.5), "head": (0.8, 1.1, 0.9), "heart": (1.3, 0.2, 0.0), "belly": (1.3, 0.0, 0.0),
     "eyes": (1.1, 0.8, 0.0), "elbow": (1.4, 0.1, 0.2), "lap": (0.35, -0.15, 1.35), "front": (0.25, 0.0, 0.0),
     "floor": (0.25, -0.6, 0.0), "held": (0.5, 0.0, 0.0),
+    "cheek": (0.55, 1.15, 0.15), "forehead": (1.1, 0.6, 0.3), "neck": (1.5, 0.5, 2.7),
+    "shoulder": (1.35, 0.55, 0.5), "back": (1.35, -0.35, 0.0), "knee": (0.3, -0.5, 1.2),
+    "thigh": (0.3, -0.7, 0.9),
 }  # fmt: skip
 _PALM = {"side": 0.0, "down": 1.45, "up": -1.3}
 
@@ -40,6 +43,9 @@ def body_place(figure: Figure, place: str, hand: int, yaw: Array) -> Array:
         "chin": (1.25 * eye[0], m * 0.3 * eye[1], mouth_z - 0.85 * eye[2]),
         "head": (0.2 * eye[0], m * 1.9 * eye[1], 2.3 * eye[2]),
         "eyes": (1.75 * eye[0], m * 0.8 * eye[1], eye[2]),
+        "cheek": (0.95 * eye[0], m * 2.1 * eye[1], mouth_z),
+        "forehead": (1.35 * eye[0], m * 1.0 * eye[1], 1.75 * eye[2]),
+        "neck": (-1.05 * eye[0], m * 0.6 * eye[1], 0.9 * mouth_z),
     }
     if place in on_head:
         return figure.point("head", np.array(on_head[place]))
@@ -50,15 +56,22 @@ def body_place(figure: Figure, place: str, hand: int, yaw: Array) -> Array:
         "front": (0.24 * h, m * 0.75 * shoulder[1], -0.06 * h),
         "elbow": (0.12 * h, -m * 0.75 * shoulder[1], -0.08 * h),
         "belly": (0.115 * h, m * 0.15 * shoulder[1], -0.10 * h),
+        "shoulder": (0.105 * h, -m * 0.8 * shoulder[1], 0.8 * shoulder[2]),
+        "back": (-0.1 * h, m * 0.2 * shoulder[1], -0.14 * h),
     }
     if place in on_chest:
         return figure.point("chest", np.array(on_chest[place]))
-    if place == "lap":
+    if place in ("lap", "thigh", "knee"):
         side = "lr"[hand]
         hip, knee = (figure.position[:, JOINT[f"{j}_{side}"]] for j in ("thigh", "shin"))
-        out: Array = hip + 0.62 * (knee - hip)
-        out[:, 2] += 0.062 * h
-        return out
+        along = unit(knee - hip)
+        square = np.stack([np.cos(yaw), np.sin(yaw), np.ones_like(yaw)], axis=1)
+        square = unit(square - dot(square, along)[:, None] * along)
+        out: Array = hip + {"lap": 0.62, "thigh": 0.7, "knee": 0.97}[place] * (knee - hip)
+        if place == "lap":
+            out[:, 2] += 0.062 * h
+            return out
+        return np.asarray(out + (0.052 if place == "thigh" else 0.046) * h * square)
     if place == "floor":
         feet = [figure.position[:, JOINT[f"foot_{s}"]] for s in "lr"]
         middle: Array = 0.5 * (feet[0] + feet[1])

@@ -26,10 +26,18 @@ from .pieces import PARTS, Piece, other_side, tucked
 from .skeleton import PALETTE, Skeleton
 from .spec import BodySpec
 from .surface import Patch
-from .weights import body_weights, face_weights, rigid, strongest
+from .weights import (
+    body_weights,
+    brow_weights,
+    face_weights,
+    mouth_weights,
+    rigid,
+    strongest,
+    tooth_weights,
+)
 
 #: Raised with every change of shape, so that old cache files are not read.
-VERSION = 4
+VERSION = 5
 
 
 @dataclass(frozen=True, eq=False)
@@ -173,8 +181,9 @@ def _weights(figure: Figure, piece: Piece, normals: NDArray[np.float64]) -> NDAr
         return body_weights(figure, points, arms=False)
     if piece.rule == "skirt":
         return body_weights(figure, points, side_blend=0.09, normals=normals)
-    if piece.rule == "face":
-        return face_weights(figure, points)
+    own = {"face": face_weights, "brow": brow_weights, "mouth": mouth_weights, "teeth": tooth_weights}
+    if piece.rule in own:
+        return own[piece.rule](figure, points)
     return rigid(piece.rule, len(points))
 
 

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from .anatomy import ARM_FRAME, Figure, arm
 from .field import Field, Points, Values
 from .hair import hair_cover, hair_pieces
-from .head import EARS_COVERED, Head, brow_line, ear, eye_opening, lips, mouth, with_neck
+from .head import EARS_COVERED, Head, brow_line, ear, eye_opening, face, lips, mouth, on_front, with_neck
 from .pieces import Piece, hemmed, parted, parted_all, shade
 from .spec import Colour
 from .surface import Focus, Patch, clip, cull, half, polygonise, simplify
@@ -16,6 +16,8 @@ from .surface import Focus, Patch, clip, cull, half, polygonise, simplify
 _WHITE: Colour = (0.97, 0.96, 0.94)
 _DARK: Colour = (0.10, 0.07, 0.07)
 _LASH: Colour = (0.15, 0.10, 0.09)
+_MOUTH: Colour = (0.25, 0.08, 0.08)
+_TEETH: Colour = (0.96, 0.94, 0.90)
 
 
 def head_pieces(f: Figure) -> list[Piece]:
@@ -69,10 +71,33 @@ def _skin(head: Head) -> list[Piece]:
     piece = Piece(clip(patch, opening, keep_outside=True), f.spec.skin, "skin", solid, rule="face")
     piece = hemmed(piece, 0.007 * u)
     skin, rim = parted(piece, lash, _LASH, "skin")
-    *rest, line_ = parted_all(skin, [head.field(cut) for cut in mouth(head)], (0.24, 0.08, 0.08), "skin")
+    *rest, _slit = parted_all(skin, [head.field(cut) for cut in mouth(head)], _MOUTH, "skin")
     outline = [head.field(cut) for cut in lips(head)]
     looks = [look for piece in rest for look in parted_all(piece, outline, lip_colour(f), "skin")]
-    return [rim, *looks, line_]
+    return [rim, *looks, *_mouth(head)]
+
+
+def _mouth(head: Head) -> list[Piece]:
+    """What is seen between parted lips: the upper teeth, darkness behind them."""
+    m, half_ = head.mouth_z, head.mouth_half
+    back = _behind(head, np.linspace(0.0, 1.02 * half_, 7), np.linspace(m - 0.125, m + 0.055, 7), 0.040)
+    teeth = _behind(head, np.linspace(0.0, 0.70 * half_, 5), np.linspace(m + 0.0075, m + 0.052, 3), 0.020)
+    return [
+        Piece(back, _MOUTH, "skin", None, rule="mouth"),
+        Piece(teeth, _TEETH, "skin", None, rule="teeth"),
+    ]
+
+
+def _behind(head: Head, across: Values, up: Values, depth: float) -> Patch:
+    """A sheet over a grid of (y, z) at Y >= 0, ``depth`` behind the foremost skin, facing forward."""
+    y, z = (g.reshape(-1) for g in np.meshgrid(across, up, indexing="ij"))
+    points = on_front(face(head), y, z) - np.array([depth, 0.0, 0.0])
+    rows, columns = len(across), len(up)
+    a = (np.arange(rows - 1)[:, None] * columns + np.arange(columns - 1)).reshape(-1)
+    faces = np.concatenate(
+        [np.stack([a, a + columns, a + columns + 1], 1), np.stack([a, a + columns + 1, a + 1], 1)]
+    )
+    return Patch(head.metres(points), faces)
 
 
 def _ears(head: Head) -> list[Piece]:
@@ -152,36 +177,47 @@ def _eyes(head: Head) -> list[Piece]:
     return pieces + _lid(head, centre, r * 1.065, seen)
 
 
-#: Turn about Y, radians, that closes a lid.
-LID_CLOSED = 1.0
+#: Turn about Y, radians, that closes an upper lid; and one that draws the lower lid over the iris.
+LID_CLOSED, UNDERLID_CLOSED = 1.0, -0.55
 
 
 def _lid(head: Head, centre: NDArray[np.float64], radius: float, seen: Field) -> list[Piece]:
-    side, up = np.linspace(-1.25, 1.25, 11), np.linspace(-0.42, 0.75, 5)
+    """Shells in front of the eyeball, out of sight behind the skin until they are turned."""
+    upper, lash = _shell(centre, radius, (-0.42, 0.75), 0.10, -LID_CLOSED)
+    lower, line = _shell(centre, radius, (-0.85, -0.12), 0.0, -UNDERLID_CLOSED)
+    skin = head.figure.spec.skin
+    looks = (
+        (upper, shade(skin, 0.90), "lid_l"),
+        (lash, _LASH, "lid_l"),
+        (lower, shade(skin, 0.94), "underlid_l"),
+        (line, shade(skin, 0.62), "underlid_l"),
+    )
+    return [Piece(patch, colour, "skin", seen, rule=rule, symmetry="side") for patch, colour, rule in looks]
+
+
+def _shell(
+    centre: NDArray[np.float64], radius: float, pitches: tuple[float, float], droop: float, turn: float
+) -> tuple[Patch, Patch]:
+    """Part of a ball between two pitches, turned about Y; and its border strip next to the pupil."""
+    side, up = np.linspace(-1.25, 1.25, 11), np.linspace(*pitches, 5)
     yaw, pitch = np.meshgrid(side, up, indexing="ij")
-    droop = pitch + 0.10 * (yaw / 1.25) ** 2 * (pitch < 0)
-    points = np.stack([np.cos(yaw) * np.cos(droop), np.sin(yaw), np.cos(yaw) * np.sin(droop)], -1).reshape(
+    pitch = pitch + droop * (yaw / 1.25) ** 2 * (pitch < 0)
+    points = np.stack([np.cos(yaw) * np.cos(pitch), np.sin(yaw), np.cos(yaw) * np.sin(pitch)], -1).reshape(
         -1, 3
     )
-    c, s = np.cos(-LID_CLOSED), np.sin(-LID_CLOSED)
+    c, s = np.cos(turn), np.sin(turn)
     turned = np.stack(
         [points[:, 0] * c + points[:, 2] * s, points[:, 1], -points[:, 0] * s + points[:, 2] * c], 1
     )
     rows, columns = len(side), len(up)
-    faces = []
-    for i in range(rows - 1):
-        for k in range(columns - 1):
-            a = i * columns + k
-            faces += [(a, a + columns, a + columns + 1), (a, a + columns + 1, a + 1)]
-    all_faces = np.array(faces, np.int64)
-    edge = (all_faces % columns <= 1).all(1) & ((all_faces % columns).min(1) == 0)
+    a = (np.arange(rows - 1)[:, None] * columns + np.arange(columns - 1)).reshape(-1)
+    faces = np.concatenate(
+        [np.stack([a, a + columns, a + columns + 1], 1), np.stack([a, a + columns + 1, a + 1], 1)]
+    )
+    column = faces % columns
+    border = column.max(1) <= 1 if turn < 0 else column.min(1) >= columns - 2
     vertices = centre + radius * turned
-    skin, lash = Patch(vertices, all_faces[~edge]), Patch(vertices, all_faces[edge])
-    colour = shade(head.figure.spec.skin, 0.90)
-    return [
-        Piece(skin, colour, "skin", seen, rule="lid_l", symmetry="side"),
-        Piece(lash, _LASH, "skin", seen, rule="lid_l", symmetry="side"),
-    ]
+    return Patch(vertices, faces[~border]), Patch(vertices, faces[border])
 
 
 def tube(line: Points, half_sizes: Points, up: Points, segments: int = 6) -> Patch:
@@ -230,7 +266,7 @@ def _brows(head: Head) -> list[Piece]:
     tall = 0.0235 * strong * (0.85 + 0.3 * np.sin(np.pi * np.minimum(t + 0.25, 1.0))) * (1.0 - 0.72 * t**2.2)
     sizes = np.stack([0.6 * tall + 0.004, tall], 1)
     patch = tube(head.metres(line), sizes * head.unit, np.tile([0.0, 0.0, 1.0], (len(line), 1)))
-    return [Piece(patch, brow_colour(head.figure), "skin", None, rule="brow_l", symmetry="side")]
+    return [Piece(patch, brow_colour(head.figure), "skin", None, rule="brow", symmetry="side")]
 
 
 def _glasses(head: Head) -> list[Piece]:

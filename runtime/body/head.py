@@ -167,13 +167,13 @@ def lips(head: Head) -> list[Field]:
 
 
 def mouth(head: Head) -> list[Field]:
-    """The line between the lips, a thin lens that opens with the jaw: inside all of these."""
+    """The slit between the lips, which opens with jaw and upper lip: inside all of these."""
     m, half = head.mouth_z, head.mouth_half
 
     def edge(sign: float) -> Field:
         def field(p: Points) -> Values:
             a = np.abs(p[:, 1]) / (half * 0.94)
-            return sign * (p[:, 2] - m - 0.009 * a**2) - 0.0058 * (1.0 - a**2.4)
+            return sign * (p[:, 2] - m - 0.009 * a**2) - 0.0078 * (1.0 - a**2.4)
 
         return field
 
@@ -196,7 +196,37 @@ def jaw_share(head: Head, p: Points) -> Values:
 def corner_share(head: Head, p: Points) -> Values:
     """How far the skin follows the left corner of the mouth, 0..1."""
     d = p - np.array([0.30, head.mouth_half * 0.95, head.mouth_z + 0.012])
-    return 0.85 * np.exp(-((d / np.array([0.12, 0.055, 0.060])) ** 2).sum(1))
+    size = np.where(d[:, 2:] > 0, np.array([[0.12, 0.058, 0.085]]), np.array([[0.12, 0.058, 0.060]]))
+    return 0.90 * np.exp(-((d / size) ** 2).sum(1))
+
+
+def lip_share(head: Head, p: Points) -> Values:
+    """How far the skin follows the upper lip, 0..1; the jaw's share is not taken off."""
+    m, half = head.mouth_z, head.mouth_half
+    across = np.clip(1.0 - (np.abs(p[:, 1]) / (1.05 * half)) ** 2, 0.0, 1.0)
+    up = np.clip(1.0 - (p[:, 2] - m - 0.02) / 0.085, 0.0, 1.0)
+    return across * up * up * (3 - 2 * up) * np.clip((p[:, 0] - 0.20) / 0.10, 0.0, 1.0)
+
+
+def lid_shares(head: Head, p: Points) -> tuple[Values, Values]:
+    """How far the skin at the edges of the left eye's opening follows the upper and the lower lid."""
+    _, ey, ez = head.eye
+    a = (p[:, 1] - ey) / 0.094
+    across = np.clip(1.0 - a * a, 0.0, 1.0) * np.clip((p[:, 0] - 0.15) / 0.08, 0.0, 1.0)
+    b = p[:, 2] - ez
+    up = np.clip(1.0 - (b - 0.048) / 0.055, 0.0, 1.0) * np.clip(b / 0.02, 0.0, 1.0)
+    down = np.clip(1.0 + (b + 0.042) / 0.075, 0.0, 1.0) * np.clip(-b / 0.02, 0.0, 1.0)
+    return 0.72 * across**0.6 * up * up * (3 - 2 * up), 0.75 * across**0.6 * down * down * (3 - 2 * down)
+
+
+def brow_share(head: Head, p: Points) -> tuple[Values, Values]:
+    """Along the left brow: how near its inner end a point is (1 inner, 0 outer), and how far skin follows it."""
+    _, ey, ez = head.eye
+    t = (p[:, 1] - ey + 0.098) / 0.190
+    inner = np.clip(1.0 - 1.35 * t, 0.0, 1.0)
+    d = p[:, 2] - ez - 0.120
+    near = np.exp(-((d / np.where(d > 0, 0.085, 0.045)) ** 2)) * np.clip((1.25 - t) / 0.4, 0.0, 1.0)
+    return inner * inner * (3 - 2 * inner), 0.5 * near * np.clip((p[:, 0] - 0.12) / 0.12, 0.0, 1.0)
 
 
 def brow_line(head: Head, count: int = 9) -> Points:

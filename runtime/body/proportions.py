@@ -85,7 +85,7 @@ def make_skeleton(spec: BodySpec) -> Skeleton:
         "head": (0.002 * h + 1.6 * lean, 0.0, p.chin + 0.20 * head),
     }
     hx, _, _ = bind["head"]
-    bind["jaw"] = (hx + 0.06 * head, 0.0, p.chin + 0.32 * head)
+    bind["jaw"] = bind["lip"] = (hx + 0.06 * head, 0.0, p.chin + 0.32 * head)
     sides = {**_face(hx, p.chin, head), **_arm(p, 0.8 * lean), **_leg(p)}
     for name, (x, y, z) in sides.items():
         bind[f"{name}_l"] = (x, y, z)
@@ -99,10 +99,13 @@ def make_skeleton(spec: BodySpec) -> Skeleton:
 def _face(hx: float, chin: float, head: float) -> dict[str, tuple[float, float, float]]:
     """Left-hand joints of the face; brows and mouth corners turn about points inside the head."""
     eye = (hx + 0.235 * head, 0.150 * head, chin + 0.470 * head)
+    brow = (hx + 0.02 * head, 0.15 * head, chin + 0.58 * head)
     return {
         "eye": eye,
         "lid": eye,
-        "brow": (hx + 0.02 * head, 0.15 * head, chin + 0.58 * head),
+        "underlid": eye,
+        "brow": brow,
+        "browin": brow,
         "mouth": (hx + 0.06 * head, 0.10 * head, chin + 0.22 * head),
     }
 

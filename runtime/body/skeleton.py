@@ -6,10 +6,11 @@ rotation turns about the model's X (forward), Y (left) and Z (up).
 
 Signs worth knowing, for the left side (mirror for the right): thumbs point forward and palms face the
 thighs, so fingers curl by a negative turn about X; the jaw opens by a positive turn about Y; a positive
-turn of an eye about Z looks left, about Y looks down; a lid closes by a positive turn about Y. Brows and
-mouth corners are moved by small turns of their joints, which sit deep in the head: positive about Y
-lowers, negative raises. ``index`` hangs on ``fingers`` and curls with it; turned by the inverse of
-``fingers`` it points. ``indextip`` is its second half, as ``fingertips`` is of the other three.
+turn of an eye about Z looks left, about Y looks down; a lid closes by a positive turn about Y, an
+``underlid`` by a negative one. Brows, mouth corners and ``lip`` (the upper lip) are moved by small turns of
+their joints, which sit deep in the head: positive about Y lowers, negative raises. ``browin`` moves the
+inner end of a brow on top of ``brow``. ``index`` hangs on ``fingers`` and curls with it; turned by the
+inverse of ``fingers`` it points. ``indextip`` is its second half, as ``fingertips`` is of the other three.
 """
 
 from __future__ import annotations
@@ -26,11 +27,14 @@ _CENTRE = (
     ("neck", "chest"),
     ("head", "neck"),
     ("jaw", "head"),
+    ("lip", "head"),
 )
 _SIDE = (
     ("eye", "head"),
     ("lid", "head"),
+    ("underlid", "head"),
     ("brow", "head"),
+    ("browin", "brow"),
     ("mouth", "head"),
     ("clavicle", "chest"),
     ("upperarm", "clavicle"),

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from .anatomy import ARM_FRAME, Figure
 from .field import Points, Values
-from .head import Head, corner_share, jaw_share
+from .head import Head, brow_share, corner_share, jaw_share, lid_shares, lip_share
 from .skeleton import PALETTE
 
 _COLUMN = {name: i for i, name in enumerate(PALETTE)}
@@ -49,19 +49,62 @@ def body_weights(
 
 
 def face_weights(figure: Figure, points: Points) -> NDArray[np.float64]:
-    """As :func:`body_weights`, with the jaw and the corners of the mouth."""
+    """As :func:`body_weights`, with jaw, lips, corners of the mouth, lids and brows."""
     w = body_weights(figure, points, arms=False)
     head = Head(figure)
     folded = head.units(points)
     left = folded[:, 1] >= 0
     folded[:, 1] = np.abs(folded[:, 1])
-    share = w[:, _COLUMN["head"]].copy()
-    jaw = jaw_share(head, folded) * share
-    corner = corner_share(head, folded) * (share - jaw)
-    w[:, _COLUMN["jaw"]] += jaw
-    w[:, _COLUMN["mouth_l"]] += corner * left
-    w[:, _COLUMN["mouth_r"]] += corner * ~left
-    w[:, _COLUMN["head"]] -= jaw + corner
+    skull = w[:, _COLUMN["head"]].copy()
+    jaw = jaw_share(head, folded)
+    corner = corner_share(head, folded) * (1 - jaw)
+    lip = lip_share(head, folded) * (1 - jaw) * (1 - corner)
+    upper, lower = lid_shares(head, folded)
+    inner, brow = brow_share(head, folded)
+    brow = brow * (1 - upper)
+    for name, share in (("jaw", jaw), ("lip", lip)):
+        w[:, _COLUMN[name]] += share * skull
+    middle = np.where(
+        left, 0.5 + 0.5 * ramp(folded[:, 1], 0.0, 0.06), 0.5 - 0.5 * ramp(folded[:, 1], 0.0, 0.06)
+    )
+    sided = (
+        ("mouth", corner, left), ("lid", upper, left), ("underlid", lower, left),
+        ("brow", brow * (1 - inner), middle), ("browin", brow * inner, middle),
+    )  # fmt: skip
+    for name, share, on_left in sided:
+        w[:, _COLUMN[f"{name}_l"]] += share * skull * on_left
+        w[:, _COLUMN[f"{name}_r"]] += share * skull * (1 - on_left)
+    w[:, _COLUMN["head"]] -= (jaw + lip + corner + upper + lower + brow) * skull
+    return w
+
+
+def brow_weights(figure: Figure, points: Points) -> NDArray[np.float64]:
+    """Weights of a brow's hair along its length, of both sides."""
+    folded = Head(figure).units(points)
+    side = np.where(folded[:, 1] >= 0, "l", "r")
+    folded[:, 1] = np.abs(folded[:, 1])
+    inner = brow_share(Head(figure), folded)[0]
+    w = np.zeros((len(points), len(PALETTE)))
+    for s in "lr":
+        w[:, _COLUMN[f"brow_{s}"]] = (1 - inner) * (side == s)
+        w[:, _COLUMN[f"browin_{s}"]] = inner * (side == s)
+    return w
+
+
+def mouth_weights(figure: Figure, points: Points) -> NDArray[np.float64]:
+    """Weights of what is inside the mouth: its dark back follows the jaw from the lips down."""
+    head = Head(figure)
+    p = head.units(points)
+    w = np.zeros((len(points), len(PALETTE)))
+    w[:, _COLUMN["jaw"]] = ramp(head.mouth_z + 0.02 - p[:, 2], 0.0, 0.06)
+    w[:, _COLUMN["head"]] = 1.0 - w[:, _COLUMN["jaw"]]
+    return w
+
+
+def tooth_weights(figure: Figure, points: Points) -> NDArray[np.float64]:
+    """Upper teeth: on the skull, a little drawn along by the jaw so that they show when it opens."""
+    w = np.zeros((len(points), len(PALETTE)))
+    w[:, _COLUMN["head"]], w[:, _COLUMN["jaw"]] = 0.75, 0.25
     return w
 
 

@@ -15,7 +15,7 @@ from runtime.body.skeleton import JOINT
 from .channels import Channels
 from .contacts import Contacts, HandTracks
 from .curves import below, delayed, plateau, ramp, smooth, wander
-from .face import GazePull, Look, blinks, look, speech
+from .face import GazePull, Look, blinks, felt, look, mimic, speech
 from .feet import ankle_positions
 from .figure import ArmPose, Figure, HandGoals
 from .gait import level_thigh, sit_clearance
@@ -79,7 +79,8 @@ class Performer:
         t, rng = self.t, self.rng
         calm = self.still
         breath = np.sin(2 * np.pi * t / rng.uniform(3.2, 4.4) + rng.uniform(0, 6.3))
-        self.breath = breath
+        self.feeling = felt(self.plan.feelings, t, rng)
+        self.breath = breath * self.feeling["breath"]
         self.sway = 0.026 * wander(t, rng, 6.5) * calm * (1 - 0.8 * self.sitting)
         self.twirl = 0.035 * wander(t, rng, 7.5) * calm
         self.nodding = 0.02 * wander(t, rng, 4.0)
@@ -113,7 +114,7 @@ class Performer:
         accelerate = np.clip(0.03 * self.push, -0.08, 0.12)
         spine_lean = (
             0.55 * lean + c["body.lean"] + 0.5 * transition + accelerate + 0.05 * self.run
-            + 0.012 * self.breath + 0.03 * self.sitting
+            + 0.012 * self.breath + 0.03 * self.sitting + self.feeling["lean"]
         )  # fmt: skip
         self.bent = smooth(np.clip(pitch + spine_lean - 0.08, 0.0, 1.2), 0.06 * self.fps)
         spine_twist = (
@@ -127,18 +128,19 @@ class Performer:
         xy = self.root + shift[:, None] * across + (c["hips.forward"] + forward - 0.3 * back)[:, None] * ahead
         z = self._pelvis_height(xy, ankle, drop + c["hips.drop"])
         root = np.concatenate([xy, z[:, None]], axis=1)
-        up = c.pair("shoulder", "up") + 0.018 * self.breath + self._raise()
+        up = c.pair("shoulder", "up") + 0.018 * self.breath + self._raise() + self.feeling["shoulders"]
         fig.torso(
             root, self.yaw, (pelvis_turn, pitch, roll), (spine_twist, spine_lean, spine_side),
-            (up, c.pair("shoulder", "forward")),
+            (up, c.pair("shoulder", "forward") + self.feeling["rounded"]),
         )  # fmt: skip
         upright = 0.75 * (pitch + spine_lean)
         talk = self.speech
         fig.head(
             self.look.head_turn - 0.5 * (spine_twist - self.look.chest_twist - twist) + self.turning
             + c["head.turn"] - 0.8 * pelvis_turn,
-            self.look.head_nod - np.clip(upright, -0.4, 0.55) + self.nodding + c["head.nod"] + talk.nod,
-            self.tilting + c["head.tilt"] + talk.tilt - 0.5 * spine_side,
+            self.look.head_nod - np.clip(upright, -0.4, 0.55) + self.nodding + c["head.nod"] + talk.nod
+            + self.feeling["nod"],
+            self.tilting + c["head.tilt"] + talk.tilt - 0.5 * spine_side + self.feeling["tilt"],
         )  # fmt: skip
         self._set_legs(ankle, toes, bind)
 
@@ -315,13 +317,16 @@ class Performer:
 
     def face(self) -> None:
         """Eyes, lids, brows, mouth and jaw."""
-        c, talk = self.channels, self.speech
-        up = c.pair("brow", "up") + 0.5 * talk.brow
-        knit = c.pair("brow", "knit").max(axis=0)
-        lids = np.clip(np.maximum(blinks(self.t, self.rng), c["lids.close"]), 0, 1)
+        c, talk, feeling = self.channels, self.speech, self.feeling
+        up = c.pair("brow", "up") + 0.5 * talk.brow + feeling["brow"]
+        knit = np.clip(c.pair("brow", "knit").max(axis=0) + feeling["knit"], 0.0, 1.2)
+        lids = np.maximum(np.maximum(blinks(self.t, self.rng), c["lids.close"]), feeling["lid"])
+        smile = np.clip(c["mouth.smile"] + feeling["smile"], -1.1, 1.1)
         self.figure.face(
             (self.look.eye_turn + c["eyes.turn"], self.look.eye_down + c["eyes.down"]),
-            lids, (up, knit), c["mouth.smile"], np.clip(talk.jaw + c["jaw.open"], 0, 1),
+            np.clip(lids, 0, 1), (up, knit), smile,
+            np.clip(talk.jaw * (1.0 - 0.5 * feeling["jaw"]) + c["jaw.open"] + feeling["jaw"], 0, 1),
+            mimic(feeling, c["mouth.smile"], talk.jaw),
         )  # fmt: skip
 
 

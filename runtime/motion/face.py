@@ -1,13 +1,15 @@
-"""Eyes, blinks and talk: where a gaze goes over time, and how the face lives."""
+"""Eyes, blinks, talk and feelings: where a gaze goes over time, and how the face lives."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
 import numpy as np
 from numpy.typing import NDArray
 
 from .curves import delayed, plateau, ramp, smooth, wander
+from .feelings import FEELINGS, Expression
+from .figure import Mimic
 from .types import Talk
 
 Array = NDArray[np.float64]
@@ -102,3 +104,48 @@ def speech(talks: list[tuple[Talk, float, float]], t: Array, fps: float, rng: np
             at = phrase + rng.uniform(0.12, 0.35)
     tilt = 0.05 * wander(t, rng, 2.3) * (ramp(jaw, 0.0, 0.1) if talks else 0.0)
     return Speech(np.clip(jaw, 0, 1), nod, np.clip(brow, 0, 1), smooth(tilt, 0.25 * fps))
+
+
+#: Seconds a feeling takes to come over somebody, and to pass.
+_COMES, _PASSES = 0.35, 0.6
+#: Smiles this much pull at the lids and lips as a feeling would.
+_OPEN_SMILE = 0.5
+
+
+@dataclass(frozen=True, eq=False)
+class Felt:
+    """Every number of :class:`~runtime.motion.feelings.Expression`, each [T]."""
+
+    values: dict[str, Array]
+
+    def __getitem__(self, name: str) -> Array:
+        return self.values[name]
+
+
+def felt(feelings: list[tuple[str, float, float]], t: Array, rng: np.random.Generator) -> Felt:
+    """Feelings (word, start, end in seconds) over the times ``t``; later ones lie over earlier ones.
+
+    They swell and ebb a little, as nobody holds a face.
+    """
+    names = [f.name for f in fields(Expression)]
+    calm = FEELINGS["neutral"]
+    values = {name: np.full(len(t), float(getattr(calm, name))) for name in names}
+    life = 1.0 + 0.10 * wander(t, rng, 2.7) if feelings else np.ones(len(t))
+    for word, start, end in feelings:
+        weight = plateau(t, start - _COMES, start, end, end + _PASSES) * life
+        for name in names:
+            values[name] = values[name] + weight * (getattr(FEELINGS[word], name) - values[name])
+    return Felt(values)
+
+
+def mimic(feeling: Felt, smile: Array, speech: Array) -> Mimic:
+    """What a feeling, an action's own smile [T] and talking [T] ask of lids and lips."""
+    grin = _OPEN_SMILE * np.clip(smile, 0.0, 1.0)
+    return Mimic(
+        lid=0.95 * np.minimum(feeling["lid"], 0.0),
+        squint=np.maximum(feeling["squint"], grin),
+        inner=feeling["inner"],
+        wide=np.clip(feeling["wide"] + grin * (1.0 - np.abs(feeling["wide"])), -1.0, 1.0)
+        * (1 - 0.35 * speech),
+        sneer=np.clip(feeling["sneer"] + 0.4 * grin, 0.0, 1.0),
+    )

@@ -49,8 +49,8 @@ FEELINGS: dict[str, Expression] = {
         nod=0.20, tilt=0.08, lean=0.09, shoulders=-0.04, rounded=0.20, breath=0.85,
     ),
     "angry": Expression(
-        brow=-0.55, inner=-0.9, knit=1.0, lid=0.05, squint=0.45, smile=-0.50, wide=-0.15, sneer=0.30, jaw=0.05,
-        nod=0.10, lean=0.08, shoulders=0.07, rounded=-0.04, breath=1.35,
+        brow=-0.55, inner=-0.9, knit=1.0, lid=0.05, squint=0.45, smile=-0.50, wide=-0.15, sneer=0.30,
+        jaw=0.05, nod=0.10, lean=0.08, shoulders=0.07, rounded=-0.04, breath=1.35,
     ),
     "afraid": Expression(
         brow=0.75, inner=0.75, knit=0.6, lid=-0.32, squint=-0.3, smile=-0.55, wide=0.55, jaw=0.22,

@@ -54,7 +54,8 @@ _KNUCKLES, _MIDDLES, _INDEXTIPS = (
     _joints("fingertips", "index"),
     _joints("indextip"),
 )
-_FACE = [JOINT["jaw"], *_joints("eye", "lid", "brow", "mouth")]
+_FACE = [JOINT["jaw"], JOINT["lip"], *_joints("eye", "lid", "underlid", "brow", "mouth")]
+_BROWS = _joints("browin")
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,6 +79,18 @@ class HandGoals:
     weight: Array
     rotation: Array
     turning: Array
+
+
+@dataclass(frozen=True, eq=False)
+class Mimic:
+    """What a feeling adds to a face, each [T]: lids turned shut, radians; the others as in
+    :class:`runtime.motion.feelings.Expression`."""
+
+    lid: Array
+    squint: Array
+    inner: Array
+    wide: Array
+    sneer: Array
 
 
 class Figure:
@@ -236,17 +249,27 @@ class Figure:
     # -- face ------------------------------------------------------------------------------
 
     def face(
-        self, eyes: tuple[Array, Array], lids: Array, brows: tuple[Array, Array], mouth: Array, jaw: Array
+        self,
+        eyes: tuple[Array, Array],
+        lids: Array,
+        brows: tuple[Array, Array],
+        mouth: Array,
+        jaw: Array,
+        mimic: Mimic | None = None,
     ) -> None:
         """eyes: turn, down [T]; lids [T]: 0 open .. 1 shut; brows: up [2, T] and knit [T]; mouth [T]: smile
-        -1..1; jaw [T]: open 0..1."""
+        -1..1; jaw [T]: open 0..1; mimic: what a feeling adds"""
         turn, down = eyes
-        still, shut, knit = np.zeros(self.frames), 0.95 * lids + 0.35 * np.clip(down, -0.4, 0.5), brows[1]
-        about_z, about_y = [still], [0.30 * jaw]
-        for m, up in zip((1.0, -1.0), brows[0], strict=True):
-            about_z += [turn, still, -m * 0.05 * knit, m * 0.10 * mouth]
-            about_y += [down, shut, -0.16 * up + 0.05 * knit, -0.16 * mouth]
+        still = np.zeros(self.frames)
+        m = Mimic(*([still] * 5)) if mimic is None else mimic
+        shut, knit = lids + 0.35 * np.clip(down, -0.4, 0.5), brows[1]
+        about_z, about_y = [still, still], [0.30 * jaw, -0.20 * m.sneer]
+        for side, up in zip((1.0, -1.0), brows[0], strict=True):
+            about_z += [turn, still, still, -side * 0.06 * knit, side * 0.16 * m.wide]
+            about_y += [down, 0.95 * shut + m.lid, -0.42 * m.squint, -0.19 * up + 0.03 * knit, -0.20 * mouth]
         self._turn_all(_FACE, np.swapaxes(rot_zy(np.stack(about_z), np.stack(about_y)), 0, 1))
+        about_z, about_y = [-side * 0.05 * knit for side in (1.0, -1.0)], [-0.15 * m.inner] * 2
+        self._turn_all(_BROWS, np.swapaxes(rot_zy(np.stack(about_z), np.stack(about_y)), 0, 1))
 
     # -- places ----------------------------------------------------------------------------
 

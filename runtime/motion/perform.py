@@ -35,13 +35,17 @@ def perform(
     fps: float,
     seed: int,
     duration: float | None = None,
+    feelings: dict[str, str] | None = None,
 ) -> SceneMotion:
     """Everybody over one shot: those with a task act, the others idle and watch.
+
+    feelings: by person, a word of :data:`runtime.motion.feelings.FEELINGS`; it wins over the action's own
 
     duration: seconds of the shot; None: as long as the longest task (3 s where nobody has one). A shot
     shorter than its action is cut off, and ends in the state the action would have led to.
     """
     plans = _plan(actors, tasks, props, seed)
+    _feel(plans, tasks, feelings or {})
     asked = duration or max((x.duration or 0.0 for x in tasks.values()), default=0.0) or None
     busy = max((p.end for p in plans.values() if p.acts), default=IDLE_TIME - TAIL) + TAIL
     wanted = asked or busy
@@ -77,6 +81,15 @@ def _plan(
         if any((partner.tracks, partner.reaches, partner.gazes, partner.beats, partner.talks)):
             add_partner(plans[window.partner], partner, window, giver)
     return plans
+
+
+def _feel(plans: dict[str, Plan], tasks: dict[str, Task], feelings: dict[str, str]) -> None:
+    for name, plan in plans.items():
+        if name in feelings:
+            plan.feelings.append((feelings[name], -1e6, 1e6))
+        elif name in tasks and tasks[name].clip.feeling and plan.windows:
+            window = plan.windows[-1]
+            plan.feelings.append((tasks[name].clip.feeling, window.start, window.at(1.0)))
 
 
 def _floor_points(performer: Performer) -> Array:

@@ -64,7 +64,10 @@ class Event:
 
 @dataclass(eq=False)
 class Plan:
-    """One person's shot. Busy until ``end`` seconds; ``held`` is what each hand holds as planned so far."""
+    """One person's shot. Busy until ``end`` seconds; ``held`` is what each hand holds as planned so far.
+
+    feelings: (word, start, end in seconds) of what shows on the face
+    """
 
     name: str
     actor: Actor
@@ -73,6 +76,7 @@ class Plan:
     homes: dict[int, Point] = field(default_factory=dict)
     windows: list[Window] = field(default_factory=list)
     events: list[Event] = field(default_factory=list)
+    feelings: list[tuple[str, float, float]] = field(default_factory=list)
     end: float = 0.0
     acts: bool = False
 

@@ -2,7 +2,8 @@
 
 ``cast NAME(parameters) { entries }``: a parameter or an entry named like a feature of
 :mod:`vdsl.lang.definitions.looks` sets that feature; an entry's value may name a parameter. A feature
-named by neither is a parameter all the same, so that anybody may wear anything. Assumes a parsed definition; guarantees that a mistake is reported at its place and its feature left at its default.
+named by neither is a parameter all the same, so that anybody may wear anything. Assumes a parsed
+definition; guarantees that a mistake is reported at its place and its feature left at its default.
 """
 
 from __future__ import annotations

@@ -10,11 +10,13 @@ from typing import Annotated
 
 import typer
 
+from .assets import assets
 from .bench import bench
 from .check import check
 from .compile import compile_command
 from .ends import ends_told
 from .explain import explain
+from .preview import preview
 from .train import train
 
 app = typer.Typer(
@@ -27,6 +29,8 @@ app = typer.Typer(
 app.command("compile")(compile_command)
 app.command()(check)
 app.command()(explain)
+app.command()(assets)
+app.command()(preview)
 app.command()(train)
 app.command()(bench)
 

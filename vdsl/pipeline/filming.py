@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from runtime.raster.renderer import Renderer
-from runtime.raster.types import STYLES, Camera, Views
+from runtime.raster.types import STYLES, Camera, Frames, Views
 
 from ..cinema.track import CameraTrack, camera_axes
 from ..propose.types import CameraProposal, StoryProposal
@@ -80,6 +80,18 @@ class Camerawork:
                     upcoming = ahead.submit(draw, begin + _FRAMES_A_LAUNCH)
                 yield from drawn
 
+    def stills(
+        self,
+        staged: StagedScene,
+        style: str,
+        moments: NDArray[np.float32],
+        views: Views,
+        size: tuple[int, int],
+        ids: bool = False,
+    ) -> Frames:
+        """Single pictures from anywhere; moments: palettes float32 [M, P, 3, 4]; ids: with the object ids."""
+        return self._renderer(staged, style).render(moments, views, size, ids=ids)
+
     def _renderer(self, staged: StagedScene, style: str) -> Renderer:
         if style not in self._renderers:
             self._renderers[style] = Renderer(self._device, STYLES[style])
@@ -87,6 +99,11 @@ class Camerawork:
             self._renderers[style].load(staged.render)
             self._loaded[style] = staged
         return self._renderers[style]
+
+
+def first_frame(track: CameraTrack) -> Camera:
+    """A track's first frame as a camera."""
+    return _camera([(track, np.array([0]))])
 
 
 def _palettes(staged: StagedScene, story: StoryProposal, frames: NDArray[np.integer]) -> NDArray[np.float32]:

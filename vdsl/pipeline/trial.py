@@ -1,0 +1,168 @@
+"""Little stages to try one action, prop or person on: scripts as text, staged and performed.
+
+Assumes names that are in the catalog. Guarantees that what an action's example names is there: small things
+on a table, big ones on the floor, and ``ben`` facing ``anna``.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from ..lang import Report, Source
+from ..lang.definitions.action import ActionDef
+from ..lang.definitions.prop import PropDef
+from ..library import Catalog
+from ..propose.story import tell
+from ..propose.types import StoryProposal
+from ..stage.assemble import StagedScene
+from .compile import Act, stage_acts
+from .script import Checked, ScriptError, check_source
+from .staging import Stagehand
+
+#: Who acts in examples, and who the other person is.
+ACTOR, PARTNER = "anna", "ben"
+CAST = ("woman(top crimson)", "man(top navy)")
+#: Far more ways than any action has: every variant is wanted here.
+_EVERY_WAY = 64
+
+
+class NoTrialError(Exception):
+    """The definition cannot be tried; the message says why."""
+
+
+@dataclass(frozen=True, eq=False)
+class Trial:
+    """An action tried: who takes part, and one performance of each variant."""
+
+    act: Act
+    people: tuple[str, ...]
+    ways: tuple[StoryProposal, ...]
+
+    @property
+    def staged(self) -> StagedScene:
+        return self.act.staged
+
+
+def try_action(
+    name: str,
+    catalog: Catalog,
+    cast: tuple[str, str] = CAST,
+    hand: Stagehand | None = None,
+    own: Path | None = None,
+) -> Trial:
+    """Every variant of an action, performed from its example.
+
+    cast: what anna and ben are; hand: one that keeps worlds and bodies; own: a script whose definitions count
+    Raises :class:`NoTrialError` where the action has no example, or one that cannot be played.
+    """
+    definition = catalog.get("action", name)
+    if not isinstance(definition, ActionDef):
+        raise NoTrialError(f"there is no action `{name}`")
+    text = action_script(definition, catalog, cast)
+    checked = _checked(text, name, own)
+    try:
+        (act,) = stage_acts(checked, hand)
+    except ScriptError as error:
+        raise NoTrialError(_told(name, error.report)) from error
+    told = tell(act.state, act.line, act.filming, checked.report, most=_EVERY_WAY)
+    if checked.report.has_errors:
+        raise NoTrialError(_told(name, checked.report))
+    ways = {way.variant: way for way in reversed(told.proposals)}
+    people = (ACTOR, PARTNER) if PARTNER in definition.example.split() else (ACTOR,)
+    return Trial(act, people, tuple(reversed(ways.values())))
+
+
+def action_script(definition: ActionDef, catalog: Catalog, cast: tuple[str, str] = CAST) -> str:
+    """The script an action is tried with: a bare floor, what its example needs, and the example."""
+    if not definition.example:
+        raise NoTrialError(f"the action `{definition.name}` has no example")
+    words = definition.example.split()
+    small: list[str] = []
+    big: list[str] = []
+    for name in definition.props:
+        prop = catalog.get("prop", name)
+        if not isinstance(prop, PropDef):
+            raise NoTrialError(f"the action `{definition.name}` is tried with `{name}`, which is no prop")
+        (small if prop.movable else big).append(name)
+    table = "table" in big
+    big = [name for name in big if name != "table"]
+    lines = []
+    if small or table:
+        lines.append("        place table = table(width 1.6m), at (1.5, 1.1)m {")
+        for k, name in enumerate(small):
+            along = (k - (len(small) - 1) / 2) * min(0.45, 1.3 / max(len(small), 1))
+            lines.append(f"            place {name} = {name}, on top, at ({along:.2f}, -0.16)m")
+        lines.append("        }")
+    beside = ((1.7, -0.9), (-1.7, 1.0), (-1.7, -0.9), (3.2, -0.9)) if lines else ((1.4, 1.0), (-1.4, 1.0),
+              (3.0, 1.0), (-3.0, 1.0))  # fmt: skip
+    for name, (x, y) in zip(big, beside, strict=False):
+        lines.append(f"        place {name} = {name}, at ({x}, {y})m")
+    both = PARTNER in words
+    return "\n".join(
+        (
+            'storyboard "trial"',
+            "set trial_floor {",
+            "    time day",
+            '    area floor, at (-6, -6)m, size (12, 12)m, floor plain, floor-color "#e9e5da" {',
+            *lines,
+            f"        spot start, at {'(-0.7, 0)m, facing 0deg' if both else '(-0.6, -0.3)m, facing -40deg'}",
+            "        spot other, at (0.7, 0)m, facing 180deg",
+            "    }",
+            "}",
+            f"character {ACTOR} = {cast[0]}",
+            *([f"character {PARTNER} = {cast[1]}"] if both else []),
+            "scene trial = trial_floor",
+            f"{ACTOR} at start" + (f" facing {PARTNER}" if both else ""),
+            *([f"{PARTNER} at other facing {ACTOR}"] if both else []),
+            f"({definition.example}) / (static full eye-level)",
+            "",
+        )
+    )  # fmt: skip
+
+
+def floor_script(placed: str, cast: dict[str, str] | None = None, size: float = 12.0) -> str:
+    """A bare floor with entries placed on it, and people side by side doing nothing."""
+    cast = cast or {}
+    lines = [
+        'storyboard "trial"',
+        "set trial_floor {",
+        "    time day",
+        f"    area floor, at ({-size / 2}, {-size / 2})m, size ({size}, {size})m, floor plain, "
+        'floor-color "#e9e5da" {',
+        placed,
+    ]
+    lines += [f"        spot s{k}, at ({1.0 * k:.2f}, 0)m, facing -90deg" for k in range(len(cast))]
+    lines += ["    }", "}"]
+    lines += [f"character {name} = {what}" for name, what in cast.items()]
+    lines += ["scene trial = trial_floor"]
+    lines += [f"{name} at s{k}" for k, name in enumerate(cast)]
+    lines += ["", "/ (static wide eye-level)", ""]
+    return "\n".join(lines)
+
+
+def stage_script(text: str, name: str, hand: Stagehand | None = None, own: Path | None = None) -> Act:
+    """The first line of a script, staged; ``own``: a script whose definitions count.
+
+    Raises :class:`NoTrialError`.
+    """
+    try:
+        return stage_acts(_checked(text, name, own), hand)[0]
+    except ScriptError as error:
+        raise NoTrialError(_told(name, error.report)) from error
+
+
+def _checked(text: str, name: str, own: Path | None) -> Checked:
+    report = Report()
+    if own is not None:
+        text = text.replace("\n", f'\nuse "{own.name}"\n', 1)
+        name = str(own.with_name("trial"))
+    try:
+        return check_source(Source(name, text), report)
+    except ScriptError as error:
+        raise NoTrialError(_told(name, report)) from error
+
+
+def _told(name: str, report: Report) -> str:
+    first = report.errors[0]
+    return f"`{name}` cannot be tried: {first.label or first.title} (in `{first.span.text}`)"

@@ -57,7 +57,7 @@ class CastDef(DefinitionBase):
     """
 
     body: tuple[ast.Entry, ...] = field(compare=False, repr=False)
-    own: int = 0
+    own: int
 
     def features(
         self, arguments: Mapping[str, float | str] | None = None, report: Report | None = None

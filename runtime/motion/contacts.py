@@ -29,6 +29,8 @@ _LIE: dict[str, tuple[float, float, float]] = {
     "thigh": (0.3, -0.7, 0.9),
 }  # fmt: skip
 _PALM = {"side": 0.0, "down": 1.45, "up": -1.3}
+#: A palm held flat against what is before one, fingers up.
+_FLAT = (-1.3, 1.2, 0.0)
 
 
 def body_place(figure: Figure, place: str, hand: int, yaw: Array) -> Array:
@@ -340,6 +342,8 @@ def reach_layer(
             bearing = float(wrap(fingers - heading))
         low = np.clip((0.62 * shoulder[2] - at[2]) / 0.6, 0.0, 1.0)
         angles = (float(np.clip(-m * bearing, -0.7, 1.3)), -0.9 * float(low), tilt)
+    if reach.palm == "ahead":
+        angles = _FLAT
     return Layer(hand, weight, place, np.array(reach.offset) + extra, angles, led)
 
 

@@ -135,7 +135,7 @@ class Reach:
 
     hand: one of :data:`HANDS`; to: one of :data:`REACH_PLACES`
     offset: metres ahead of, to the outside of and above the place, seen from the person
-    palm: where the palm faces: ``side`` (inward), ``down``, ``up``
+    palm: where the palm faces: ``side`` (inward), ``down``, ``up``, ``ahead`` (fingers up)
     shake: metres up and down while there, ``times`` times; along: metres along the held thing, for ``held``
     lead: what is to be there: the ``palm``, or the far end (``point``) of what the hand holds
     """

@@ -22,7 +22,7 @@ BODY_PLACES = ("mouth", "ear", "chin", "chest", "hip", "head", "heart", "belly",
 PARTNER_PLACES = ("shoulder", "hand", "back", "waist", "head", "cheek", "chest", "elbow", "belly")
 REACHABLE = ("target", "second", "meet", "clasp", "floor", "held", "partner", *BODY_PLACES)
 GAZES = ("target", "second", "partner", "held", "ahead", "down", "up", "aside", "around")
-PALMS = ("side", "down", "up")
+PALMS = ("side", "down", "up", "ahead")
 LEADS = ("palm", "point")
 #: Parts there are one of, and their axes with the kind of value.
 CENTRE: dict[str, dict[str, str]] = {

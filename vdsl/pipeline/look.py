@@ -11,7 +11,6 @@ from ..lang import Report, Source, read_source
 from .compile import Act, stage_acts
 from .preview import Studio, at_rest
 from .script import Checked, ScriptError, check_source
-from .staging import Stagehand
 
 
 def look_at(path: Path, scene: str, camera: str | None, device: str = "auto") -> tuple[Image.Image, Report]:
@@ -43,7 +42,7 @@ def _with_a_look(path: Path, scene: str, camera: str) -> Checked:
 
 def _opening(checked: Checked, scene: str) -> Act:
     """The added line, in the state the scene opens with."""
-    acts = stage_acts(checked, Stagehand(checked.catalog))
+    acts = stage_acts(checked)
     look = acts[-1]
     first = next(a for a in acts if a.line.scene == look.line.scene)
     return replace(look, state=first.state)

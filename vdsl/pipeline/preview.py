@@ -29,7 +29,6 @@ from ..stage.assemble import StagedScene, palettes
 from .compile import Act
 from .filming import Camerawork, first_frame
 from .judging import GeometryJudge
-from .staging import Stagehand
 from .trial import CAST, NoTrialError, Trial, floor_script, stage_script, try_action
 
 PAPER, INK, QUIET = "#f6f3ec", "#1b1c1f", "#6f6a61"
@@ -62,13 +61,12 @@ def around(
 
 
 class Studio:
-    """Draws stills; keeps its renderer, worlds and bodies between them."""
+    """Draws stills; keeps its renderer between them."""
 
     def __init__(self, catalog: Catalog, device: str = "auto", style: str = "board", own: Path | None = None):
         self.catalog = catalog
         self.own = own
         self.style = style
-        self.hand = Stagehand(catalog)
         self._camerawork = Camerawork(device)
 
     # -- stills ------------------------------------------------------------------------------
@@ -98,7 +96,7 @@ class Studio:
         self, name: str, cast: tuple[str, str] = CAST, cell: tuple[int, int] = (230, 280)
     ) -> Image.Image:
         """A strip of poses for each variant of an action."""
-        trial = try_action(name, self.catalog, cast, self.hand, self.own)
+        trial = try_action(name, self.catalog, cast, self.own)
         rows = [self._strip(trial, way, cell) for way in trial.ways]
         heads = [f"{name} · {way.variant} · {way.frames / trial.act.filming.fps:.1f} s" for way in trial.ways]
         return _stacked(list(zip(heads, rows, strict=True)))
@@ -107,7 +105,7 @@ class Studio:
         """Many actions, one short strip each: their first variant."""
         rows = []
         for name in names:
-            trial = try_action(name, self.catalog, CAST, self.hand, self.own)
+            trial = try_action(name, self.catalog, CAST, self.own)
             rows.append((name, self._strip(trial, trial.ways[0], cell)))
         return _stacked(rows)
 
@@ -138,7 +136,7 @@ class Studio:
     def cast(self, names: Sequence[str], height: int = 560, turned: bool = False) -> Image.Image:
         """A line-up; of one person a turn-around."""
         calls = {f"p{k}": name for k, name in enumerate(names)}
-        act = stage_script(floor_script("", calls), "cast", self.hand, self.own)
+        act = stage_script(floor_script("", calls), "cast", self.own)
         way = at_rest(act)
         cell = (round(height * 0.46), height)
         cells = []
@@ -162,9 +160,7 @@ class Studio:
             prop = self.catalog.get("prop", name)
             if not isinstance(prop, PropDef):
                 raise NoTrialError(f"there is no prop `{name}`")
-            act = stage_script(
-                floor_script(f"        place it = {name}, at (0, 0)m"), name, self.hand, self.own
-            )
+            act = stage_script(floor_script(f"        place it = {name}, at (0, 0)m"), name, self.own)
             low, high = _bounds(act.staged.world, ("floor", "it"))
             reach = float(np.linalg.norm(np.subtract(high, low)))
             aim = tuple((a + b) / 2 for a, b in zip(low, high, strict=True))
@@ -221,7 +217,7 @@ class Studio:
     def _set(self, name: str, time: str) -> Act:
         at = f" at {time}" if time else ""
         text = f'storyboard "set"\nscene s = {name}{at}\n\n/ (static wide)\n'
-        return stage_script(text, name, self.hand, self.own)
+        return stage_script(text, name, self.own)
 
     def plan(
         self,

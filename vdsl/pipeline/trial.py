@@ -18,7 +18,6 @@ from ..propose.types import StoryProposal
 from ..stage.assemble import StagedScene
 from .compile import Act, stage_acts
 from .script import Checked, ScriptError, check_source
-from .staging import Stagehand
 
 #: Who acts in examples, and who the other person is.
 ACTOR, PARTNER = "anna", "ben"
@@ -48,12 +47,11 @@ def try_action(
     name: str,
     catalog: Catalog,
     cast: tuple[str, str] = CAST,
-    hand: Stagehand | None = None,
     own: Path | None = None,
 ) -> Trial:
     """Every variant of an action, performed from its example.
 
-    cast: what anna and ben are; hand: one that keeps worlds and bodies; own: a script whose definitions count
+    cast: what anna and ben are; own: a script whose definitions count
     Raises :class:`NoTrialError` where the action has no example, or one that cannot be played.
     """
     definition = catalog.get("action", name)
@@ -62,7 +60,7 @@ def try_action(
     text = action_script(definition, catalog, cast)
     checked = _checked(text, name, own)
     try:
-        (act,) = stage_acts(checked, hand)
+        (act,) = stage_acts(checked)
     except ScriptError as error:
         raise NoTrialError(_told(name, error.report)) from error
     told = tell(act.state, act.line, act.filming, checked.report, most=_EVERY_WAY)
@@ -141,13 +139,13 @@ def floor_script(placed: str, cast: dict[str, str] | None = None, size: float = 
     return "\n".join(lines)
 
 
-def stage_script(text: str, name: str, hand: Stagehand | None = None, own: Path | None = None) -> Act:
+def stage_script(text: str, name: str, own: Path | None = None) -> Act:
     """The first line of a script, staged; ``own``: a script whose definitions count.
 
     Raises :class:`NoTrialError`.
     """
     try:
-        return stage_acts(_checked(text, name, own), hand)[0]
+        return stage_acts(_checked(text, name, own))[0]
     except ScriptError as error:
         raise NoTrialError(_told(name, error.report)) from error
 

@@ -5,7 +5,8 @@ Built once per scene by whoever knows what a set is; frozen afterwards.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -29,16 +30,67 @@ class Spot:
 
 
 @dataclass(frozen=True, eq=False)
+class Hinge:
+    """How a part moves on the thing it belongs to. Coordinates are those of the part's mesh, with it closed.
+
+    kind: ``hinge`` turns about ``axis`` [3] through ``pivot`` [3]; ``slide`` goes along ``axis``
+    open: radians or metres when fully open; handle: [3], where a hand takes hold of it
+    closed: [4, 4] world_from_part with it closed; owner: id of the object it is a part of
+    boxes: [B, 2, 3] centres and half extents of what stands in for it, closed
+    way: whether it closes an opening people pass through
+    """
+
+    kind: str
+    pivot: NDArray[np.float64]
+    axis: NDArray[np.float64]
+    open: float
+    handle: NDArray[np.float64]
+    closed: NDArray[np.float64]
+    owner: int
+    boxes: NDArray[np.float64]
+    way: bool = False
+
+    def matrices(self, openness: NDArray[np.float64] | float) -> NDArray[np.float64]:
+        """world_from_part [..., 4, 4] at openness [...], 0 closed .. 1 fully open."""
+        share = np.asarray(openness, np.float64)
+        local = np.zeros((*share.shape, 4, 4))
+        local[..., 3, 3] = 1.0
+        if self.kind == "slide":
+            local[..., :3, :3] = np.eye(3)
+            local[..., :3, 3] = share[..., None] * self.open * self.axis
+        else:
+            x, y, z = self.axis
+            cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+            angle = (share * self.open)[..., None, None]
+            turn = np.eye(3) + np.sin(angle) * cross + (1.0 - np.cos(angle)) * (cross @ cross)
+            local[..., :3, :3] = turn
+            local[..., :3, 3] = self.pivot - turn @ self.pivot
+        return np.asarray(self.closed @ local)
+
+    def solids(self, openness: float) -> tuple[NDArray[np.float64], NDArray[np.float64], float]:
+        """Its boxes [B, 3] centres, [B, 3] half extents and their turn about Z, at an openness."""
+        moved = np.linalg.inv(self.closed) @ self.matrices(openness)
+        turn = float(np.arctan2(moved[1, 0], moved[0, 0])) if abs(moved[2, 2]) > 0.999 else 0.0
+        c, s = np.cos(turn), np.sin(turn)
+        back = np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]]) @ moved[:3, :3]
+        centre = self.boxes[:, 0] @ moved[:3, :3].T + moved[:3, 3]
+        half = self.boxes[:, 1] @ np.abs(back).T
+        centre = centre @ self.closed[:3, :3].T + self.closed[:3, 3]
+        return centre, half, turn + float(np.arctan2(self.closed[1, 0], self.closed[0, 0]))
+
+
+@dataclass(frozen=True, eq=False)
 class WorldObject:
     """A thing in the set with a place in its tree.
 
     id: index in :attr:`World.objects`, and what id buffers hold
     path: names from the set's root, e.g. ``("kitchen", "table", "cup")``
-    kind: the name of the prop, or ``room`` / ``area`` / ``wall`` / ``door`` / ``window``
+    kind: the name of the prop, or ``room``, ``area``, ``stairs``, ``door``, ``window``, or ``part`` of a prop
     low, high: axis-aligned bounds in the world, metres
-    mesh: for a movable object its mesh in its own coordinates, else None (it is part of the static mesh)
+    mesh: for what moves its mesh in its own coordinates, else None (it is part of the static mesh)
     world_from_object: [4, 4], the placement (at rest for a movable object)
     grip: where a hand takes hold, in object coordinates, for a movable object
+    hinge: how it moves, for a part that opens; ajar: how far it stands open at first, 0..1
     """
 
     id: int
@@ -50,6 +102,8 @@ class WorldObject:
     world_from_object: NDArray[np.float64]
     mesh: Mesh | None = None
     grip: tuple[float, float, float] | None = None
+    hinge: Hinge | None = None
+    ajar: float = 0.0
 
     @property
     def centre(self) -> tuple[float, float, float]:
@@ -80,12 +134,46 @@ class Solids:
 class Wall:
     """A wild wall: not drawn, and not in the way, when it stands between camera and subject.
 
-    low, high: end points of its foot on the floor (x, y); height in metres
+    low, high: end points of its foot on the floor (x, y); height in metres, from ``base`` up
     """
 
     low: tuple[float, float]
     high: tuple[float, float]
     height: float
+    base: float = 0.0
+
+
+Rect = tuple[float, float, float, float]
+
+
+@dataclass(frozen=True)
+class Level:
+    """Floors at one height. floors: walkable rectangles (x0, y0, x1, y1), metres."""
+
+    height: float
+    floors: tuple[Rect, ...]
+
+
+@dataclass(frozen=True)
+class Stairs:
+    """A straight flight. low: middle of the foot of its first riser; high: middle of the edge of the floor it
+    leads to; ``steps`` risers of equal height, ``steps - 1`` treads between them."""
+
+    low: tuple[float, float, float]
+    high: tuple[float, float, float]
+    width: float
+    steps: int
+    ahead: tuple[float, float]
+
+    @property
+    def rise(self) -> float:
+        return (self.high[2] - self.low[2]) / self.steps
+
+    @property
+    def run(self) -> float:
+        """Depth of a tread, metres."""
+        length = float(np.hypot(self.high[0] - self.low[0], self.high[1] - self.low[1]))
+        return length / max(self.steps - 1, 1)
 
 
 @dataclass(frozen=True)
@@ -111,7 +199,9 @@ class World:
     mesh: everything that never moves, world coordinates
     mesh_object: int32 [F], object id of each face; mesh_wall: int32 [F], wild wall of each face, -1 for none,
         or -2 for faces seen from their front only (ceilings, so that a camera may look in from above)
-    floors: walkable rectangles (x0, y0, x1, y1) in metres, joined where they touch or through door gaps
+    floors: walkable rectangles (x0, y0, x1, y1) in metres, joined where they touch or through door gaps;
+        those of all levels
+    levels: the same floors by height, lowest first; stairs: what joins them
     """
 
     name: str
@@ -121,6 +211,60 @@ class World:
     objects: tuple[WorldObject, ...]
     solids: Solids
     walls: tuple[Wall, ...]
-    floors: tuple[tuple[float, float, float, float], ...]
+    floors: tuple[Rect, ...]
     light: Light
     outdoor: bool
+    levels: tuple[Level, ...] = ()
+    stairs: tuple[Stairs, ...] = ()
+
+    @property
+    def storeys(self) -> tuple[Level, ...]:
+        """Its levels; all floors at 0 where none are given."""
+        return self.levels or (Level(0.0, self.floors),)
+
+    def opened(self, openness: Mapping[int, float]) -> World:
+        """The same world with parts standing open as far as said, by object id; itself where nothing moves.
+
+        Placement, bounds, spots and solids follow, also the spots a part lends to its owner.
+        """
+        moved = {
+            k: share
+            for k, share in openness.items()
+            if self.objects[k].hinge is not None and abs(share - self.objects[k].ajar) > 1e-6
+        }
+        if not moved:
+            return self
+        objects = list(self.objects)
+        centre, half, yaw = (a.copy() for a in (self.solids.centre, self.solids.half, self.solids.yaw))
+        for k, share in moved.items():
+            part, hinge = objects[k], objects[k].hinge
+            assert hinge is not None
+            matrix = hinge.matrices(share)
+            shift = matrix @ np.linalg.inv(part.world_from_object)
+            turn = float(np.arctan2(shift[1, 0], shift[0, 0]))
+            spots = {id(s): _moved(s, shift, turn) for s in part.spots}
+            rows = np.flatnonzero(self.solids.object == k)
+            if len(rows):
+                centre[rows], half[rows], yaw[rows] = hinge.solids(share)
+            low, high = _bounds(part, matrix)
+            named = tuple(spots.values())
+            objects[k] = replace(part, spots=named, low=low, high=high, world_from_object=matrix, ajar=share)
+            owner = objects[hinge.owner]
+            lent = tuple(spots.get(id(s), s) for s in owner.spots)
+            objects[hinge.owner] = replace(owner, spots=lent)
+        solids = Solids(centre, half, yaw, self.solids.wall, self.solids.object)
+        return replace(self, objects=tuple(objects), solids=solids)
+
+
+def _moved(spot: Spot, shift: NDArray[np.float64], turn: float) -> Spot:
+    x, y, z = (shift @ np.array([*spot.position, 1.0]))[:3].tolist()
+    return Spot(spot.name, (x, y, z), None if spot.facing is None else spot.facing + turn)
+
+
+def _bounds(
+    part: WorldObject, matrix: NDArray[np.float64]
+) -> tuple[tuple[float, float, float], tuple[float, float, float]]:
+    assert part.mesh is not None
+    points = part.mesh.vertices @ matrix[:3, :3].T + matrix[:3, 3]
+    (a, b, c), (d, e, f) = points.min(0).tolist(), points.max(0).tolist()
+    return (a, b, c), (d, e, f)

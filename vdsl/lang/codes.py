@@ -1,7 +1,8 @@
 # ruff: noqa: E501 (a table of prose; its lines are sentences)
 """The table of diagnostic codes: a title, why, a wrong and a right example (``vdsc explain``).
 
-Ranges: VDS001-099 the language, VDS100-139 sets and props, VDS140-159 actions, VDS160-169 the cast.
+Ranges: VDS001-099 the language, VDS100-139 sets and props, VDS140-159 actions, VDS160-169 the cast,
+VDS200-219 files of other programs.
 The examples of VDS001-099 are tests: the wrong one gives its code, the right one no error at all.
 """
 
@@ -121,13 +122,6 @@ CODES: dict[str, Code] = {
         "written in.",
         'use "no_such_file.vds"',
         "",
-    ),
-    "VDS017": Code(
-        "definition from another program's file",
-        "Models and motions of other programs (.glb, .obj, .bvh) are not read yet. Sets, props, cast and actions "
-        "can be written in text; `docs/language.md` shows how.",
-        'prop lamp_a = "lamp.glb"',
-        "prop lamp_a {\n    cylinder 3cm, height 1.4m\n}",
     ),
     "VDS018": Code(
         "defined twice",
@@ -643,6 +637,55 @@ CODES: dict[str, Code] = {
         "nothing to film",
         "A file that only defines sets, props, cast or actions can be checked, but there is no story in it to make "
         "a film of.",
+    ),
+    # -- what opens, and floors at heights (VDS240-259) --------------------------------------
+    "VDS240": Code(
+        "a part that does not move",
+        "A `hinge` has in its braces the shapes that turn, and an angle `open`; a `slide` a length `open`.",
+        "hinge lid, at (0, 15cm, 20cm), axis x, open 0deg { box (40cm, 30cm, 2cm) }",
+        "hinge lid, at (0, 15cm, 20cm), axis x, open -100deg { box (40cm, 30cm, 2cm), at (0, 0, 20cm) }",
+    ),
+    "VDS241": Code(
+        "stairs to nowhere",
+        "Stairs climb from where they stand to the floor of the room `to`, or by a `height`, in steps of no more "
+        "than 0.4 m. The `steps` of a platform are on its sides: north, south, east or west.",
+        "stairs, at (1, 0.5)m, to cellar",
+        "stairs, at (1, 0.5)m, to landing",
+    ),
+    # -- files of other programs (VDS200-219) ------------------------------------------------
+    "VDS200": Code(
+        "no such file to import",
+        "The file a definition names is missing, or is of a kind nothing of that sort comes out of. Things and sets "
+        "come out of .glb, .gltf, .obj, .ply and .stl, people out of .glb and .gltf, actions out of .bvh, .glb and "
+        ".gltf. The path is relative to the file it is written in.",
+        'prop lamp_a = "lamp.blend"',
+        'prop lamp_a = "lamp.glb", height 40cm',
+    ),
+    "VDS201": Code(
+        "file that cannot be used",
+        "The file is there, but broken (cut off, numbers that are none, references to what is not there), larger than "
+        "what can be filmed, or it wants files from outside the project's folder. The message says which. `docs/import.md` "
+        "has the limits.",
+    ),
+    "VDS202": Code(
+        "options of a file that do not go together",
+        "Of `height`, `length`, `width` and `scale` one is enough: a model keeps its proportions. A stretch of a motion "
+        "goes `from` an earlier `to` a later time.",
+        'prop lamp_a = "lamp.glb", height 40cm, scale 1cm',
+        'prop lamp_a = "lamp.glb", height 40cm',
+    ),
+    "VDS203": Code(
+        "nobody in this file",
+        "A character out of a file needs a skeleton with a skin on it, so that it can move: a hips bone with two legs, "
+        "a spine and two arms.",
+        'cast robot_a = "lamp.glb"',
+        'prop robot_a = "lamp.glb"',
+    ),
+    "VDS204": Code(
+        "no such motion in this file",
+        "An action out of a file is one motion of it: the first, or the one named with `clip`.",
+        'action wave_a = "robot.glb", clip "Wavee"',
+        'action wave_a = "robot.glb", clip "Wave"',
     ),
 }
 

@@ -2,7 +2,7 @@
 
 Rooms meet in the middle of the wall they share. Every stretch between two corners becomes one wild
 wall, with a face in the colour of the room on either side; openings of the rooms on both sides are
-cut out of it. Ceilings are left out: they would hide the set from above and keep the light out.
+cut out of it. Over a room with another above it the wall goes up to that one's floor.
 """
 
 from __future__ import annotations
@@ -19,6 +19,8 @@ from runtime.shapes import Colour, painted
 from ..lang.definitions.set import WALL_THICKNESS, Opening, Room, SetDef
 
 SKIRTING_HEIGHT, SKIRTING_DEPTH = 0.09, 0.014
+#: As thick as floors between storeys may be, metres: so far a wall goes on above its room.
+SLAB = 0.8
 TRIM: Colour = (0.955, 0.94, 0.9)
 
 
@@ -29,6 +31,7 @@ class Stretch:
     axis: 0 where it runs along X, 1 along Y; across: its middle line; start, end: along the axis
     before, after: indices of the rooms on its lower and upper side, or None for the outside
     extend: metres added at each end, below zero where it stops short of its corner
+    base: height of its foot
     """
 
     axis: int
@@ -39,6 +42,7 @@ class Stretch:
     before: int | None
     after: int | None
     extend: tuple[float, float]
+    base: float = 0.0
 
     def point(self, along: float) -> tuple[float, float]:
         return (along, self.across) if self.axis == 0 else (self.across, along)
@@ -46,7 +50,7 @@ class Stretch:
 
 @dataclass(frozen=True, eq=False)
 class Cut:
-    """An opening in a stretch: from ``low`` to ``high`` along it, ``sill`` to ``top`` up."""
+    """An opening in a wall: from ``low`` to ``high`` along it, from height ``sill`` to height ``top``."""
 
     low: float
     high: float
@@ -75,22 +79,54 @@ def stretches(definition: SetDef) -> list[Stretch]:
             sides.setdefault(key, []).append((round(start, 3), round(end, 3), side, index))
     found = []
     for (axis, across), parts in sorted(sides.items()):
-        ends = sorted({e for part in parts for e in part[:2]})
-        spans = []
-        for start, end in pairwise(ends):
-            rooms: list[int | None] = [None, None]
-            for a, b, side, index in parts:
-                if a <= start and end <= b:
-                    rooms[side] = index
-            if rooms != [None, None]:
-                spans.append((start, end, rooms))
-        for start, end, (before, after) in spans:
-            heights = [definition.rooms[i].size[2] for i in (before, after) if i is not None]
-            extend = (
-                0.0 if any(s[1] == start for s in spans) else _reach(sides, axis, across, start),
-                0.0 if any(s[0] == end for s in spans) else _reach(sides, axis, across, end),
-            )
-            found.append(Stretch(axis, across, start, end, max(heights), before, after, extend))
+        bases = sorted({round(definition.rooms[index].at[2], 3) for *_, index in parts})
+        for k, base in enumerate(bases):
+            above = bases[k + 1] if k + 1 < len(bases) else None
+            found += _storey(definition, sides, (axis, across), parts, base, above)
+    return found
+
+
+def _reaches(room: Room, height: float) -> bool:
+    """Whether a room has wall at a height, and some way above it."""
+    return room.at[2] <= height + 1e-3 and room.at[2] + room.size[2] > height + 0.3
+
+
+def _storey(
+    definition: SetDef,
+    sides: _Sides,
+    line: tuple[int, float],
+    every: list[tuple[float, float, int, int]],
+    base: float,
+    above: float | None,
+) -> list[Stretch]:
+    """The stretches of one line that stand on ``base`` and end below ``above``."""
+    axis, across = line
+    parts = [p for p in every if _reaches(definition.rooms[p[3]], base)]
+    ends = sorted({e for part in parts for e in part[:2]})
+    spans = []
+
+    def _over(height: float, start: float, end: float) -> bool:
+        others = ((a, b, definition.rooms[i].at[2]) for a, b, _, i in every)
+        return any(abs(z - height) < 1e-3 and a < end - 1e-3 and b > start + 1e-3 for a, b, z in others)
+
+    for start, end in pairwise(ends):
+        rooms: list[int | None] = [None, None]
+        for a, b, side, index in parts:
+            if a <= start and end <= b:
+                rooms[side] = index
+        if rooms != [None, None]:
+            spans.append((start, end, rooms))
+    found = []
+    for start, end, (before, after) in spans:
+        rooms_here = [definition.rooms[i] for i in (before, after) if i is not None]
+        top = max(r.at[2] + r.size[2] for r in rooms_here)
+        if above is not None and (above < top or (above < top + SLAB and _over(above, start, end))):
+            top = above
+        extend = (
+            0.0 if any(s[1] == start for s in spans) else _reach(sides, axis, across, start),
+            0.0 if any(s[0] == end for s in spans) else _reach(sides, axis, across, end),
+        )
+        found.append(Stretch(axis, across, start, end, top - base, before, after, extend, base))
     return found
 
 
@@ -108,42 +144,60 @@ def _reach(sides: _Sides, axis: int, across: float, end: float) -> float:
     return WALL_THICKNESS / 2 if axis == 0 and not (below and above) else -WALL_THICKNESS / 2
 
 
-def find_stretch(walls: list[Stretch], room: Room, wall: str, at: float) -> int | None:
-    """Index of the stretch a place on a room's wall belongs to."""
+def find_stretch(walls: list[Stretch], room: Room, wall: str, at: float, up: float = 0.0) -> int | None:
+    """Index of the stretch a place on a room's wall belongs to; ``up``: metres above the room's floor."""
     axis, across, start, _ = wall_line(room, wall)
+    height = room.at[2] + up + 1e-3
     for index, stretch in enumerate(walls):
         here = stretch.axis == axis and abs(stretch.across - across) < 1e-3
-        if here and stretch.start - 1e-6 <= start + at <= stretch.end + 1e-6:
+        inside = stretch.start - 1e-6 <= start + at <= stretch.end + 1e-6
+        if here and inside and stretch.base <= height < stretch.base + stretch.height:
             return index
     return None
+
+
+def cut_walls(walls: list[Stretch], room: Room, opening: Opening) -> list[int]:
+    """Indices of the stretches an opening goes through, that of its foot first."""
+    first = find_stretch(walls, room, opening.wall, opening.at, opening.sill)
+    if first is None:
+        return []
+    one, cut = walls[first], cut_of(room, opening)
+    others = [
+        k
+        for k, s in enumerate(walls)
+        if k != first
+        and (s.axis, s.across, s.start, s.end) == (one.axis, one.across, one.start, one.end)
+        and s.base < cut.top - 1e-3
+        and s.base + s.height > cut.sill + 1e-3
+    ]
+    return [first, *others]
 
 
 def cut_of(room: Room, opening: Opening) -> Cut:
     """What an opening takes out of its wall."""
     start = wall_line(room, opening.wall)[2]
-    middle = start + opening.at
-    return Cut(
-        middle - opening.width / 2, middle + opening.width / 2, opening.sill, opening.sill + opening.height
-    )
+    middle, sill = start + opening.at, room.at[2] + opening.sill
+    return Cut(middle - opening.width / 2, middle + opening.width / 2, sill, sill + opening.height)
 
 
 def wall_pieces(stretch: Stretch, cuts: list[Cut]) -> list[tuple[float, float, float, float]]:
     """The wall without its openings: (low, high, bottom, top) rectangles."""
     pieces = []
+    base, crown = stretch.base, stretch.base + stretch.height
     position = stretch.start - stretch.extend[0]
     for cut in sorted(cuts, key=lambda c: c.low):
         low, high = max(cut.low, position), max(cut.high, position)
         if low > position + 1e-6:
-            pieces.append((position, low, 0.0, stretch.height))
+            pieces.append((position, low, base, crown))
         if high > low:
-            if cut.sill > 1e-6:
-                pieces.append((low, high, 0.0, cut.sill))
-            if cut.top < stretch.height - 1e-6:
-                pieces.append((low, high, cut.top, stretch.height))
+            if cut.sill > base + 1e-6:
+                pieces.append((low, high, base, min(cut.sill, crown)))
+            if cut.top < crown - 1e-6:
+                pieces.append((low, high, max(cut.top, base), crown))
         position = high
     last = stretch.end + stretch.extend[1]
     if position < last - 1e-6:
-        pieces.append((position, last, 0.0, stretch.height))
+        pieces.append((position, last, base, crown))
     return pieces
 
 
@@ -163,7 +217,7 @@ def wall_mesh(
             meshes.append(_quad(stretch.axis, corners, (0, 1 if side else -1, 0), colors[side], parts[side]))
         a, b = stretch.across - half, stretch.across + half
         edges = [([(low, a, top), (high, a, top), (high, b, top), (low, b, top)], (0, 0, 1))]
-        if bottom > 0:
+        if bottom > stretch.base:
             under = [(low, a, bottom), (high, a, bottom), (high, b, bottom), (low, b, bottom)]
             edges.append((under, (0, 0, -1)))
         meshes += [_quad(stretch.axis, corners, normal, TRIM, parts[2]) for corners, normal in edges]
@@ -194,46 +248,24 @@ def _end(
 def skirting(stretch: Stretch, cuts: list[Cut], side: int, clip: tuple[float, float], part: int) -> Mesh:
     """A board along the foot of one side, within ``clip`` (the room's inside)."""
     half = WALL_THICKNESS / 2
-    sign = 1 if side else -1
+    sign, foot = 1 if side else -1, stretch.base
     near = stretch.across + sign * half
     far = near + sign * SKIRTING_DEPTH
     meshes = []
     for low, high, bottom, _ in wall_pieces(stretch, cuts):
         low, high = max(low, clip[0]), min(high, clip[1])
-        if bottom > 0 or high - low < 0.02:
+        if bottom > foot or high - low < 0.02:
             continue
-        h = SKIRTING_HEIGHT
-        front = [(low, far, 0.0), (high, far, 0.0), (high, far, h), (low, far, h)]
+        h = foot + SKIRTING_HEIGHT
+        front = [(low, far, foot), (high, far, foot), (high, far, h), (low, far, h)]
         top = [(low, near, h), (high, near, h), (high, far, h), (low, far, h)]
         meshes.append(_quad(stretch.axis, front, (0, sign, 0), TRIM, part))
         # lit like its front: a lip this thin is no edge of its own in a picture
         meshes.append(_quad(stretch.axis, top, (0, 0, 1), TRIM, part, (0, sign, 0)))
         for end, normal in ((low, -1), (high, 1)):
-            cap = [(end, near, 0.0), (end, far, 0.0), (end, far, h), (end, near, h)]
+            cap = [(end, near, foot), (end, far, foot), (end, far, h), (end, near, h)]
             meshes.append(_quad(stretch.axis, cap, (normal, 0, 0), TRIM, part))
     return join(meshes)
-
-
-def floor_mesh(room: Room, part: int) -> Mesh:
-    """A room's floor, to the middle of its walls, in a grid of quads about 2 m wide."""
-    (x, y), (w, d) = room.at[:2], room.size[:2]
-    nx, ny = max(1, round(w / 2.0)), max(1, round(d / 2.0))
-    gx, gy = np.meshgrid(np.linspace(x, x + w, nx + 1), np.linspace(y, y + d, ny + 1), indexing="ij")
-    vertices = np.stack([gx.ravel(), gy.ravel(), np.zeros(gx.size)], 1)
-    i, j = np.meshgrid(np.arange(nx), np.arange(ny), indexing="ij")
-    a = (i * (ny + 1) + j).ravel()
-    quads = np.stack([a, a + ny + 1, a + ny + 2, a + 1], 1)
-    faces = np.concatenate([quads[:, [0, 1, 2]], quads[:, [0, 2, 3]]])
-    normals = np.tile([0.0, 0.0, 1.0], (len(vertices), 1))
-    return painted(vertices, faces, normals, room.floor_color, room.floor, part)
-
-
-def ceiling_mesh(room: Room, part: int) -> Mesh:
-    """A room's ceiling, facing down, a little lighter than its walls."""
-    floor = floor_mesh(room, part)
-    vertices = floor.vertices + np.array([0, 0, room.size[2]], np.float32)
-    r, g, b = (c + (1.0 - c) * 0.4 for c in room.wall_color)
-    return painted(vertices, floor.faces[:, ::-1], -floor.normals, (r, g, b), "plaster", part)
 
 
 def _quad(

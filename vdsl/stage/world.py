@@ -16,9 +16,10 @@ from numpy.typing import NDArray
 from runtime.mesh import MATERIALS, Mesh, join
 from runtime.raster.types import ONE_SIDED
 from runtime.shapes import painted
-from runtime.world import Solids, Spot, Wall, World, WorldObject
+from runtime.world import Hinge, Level, Rect, Solids, Spot, Stairs, Wall, World, WorldObject
 
-from ..lang.definitions.prop import PropSpot
+from ..lang.definitions.levels import Flight, Platform
+from ..lang.definitions.prop import PropPart, PropShape, PropSpot
 from ..lang.definitions.set import (
     WALL_THICKNESS,
     Opening,
@@ -30,16 +31,31 @@ from ..lang.definitions.set import (
     find_prop,
 )
 from ..lang.diagnostics import Report
+from .floors import (
+    ceiling_mesh,
+    flight_boxes,
+    flight_matrix,
+    flight_mesh,
+    floor_mesh,
+    inside,
+    plan,
+    platform_mesh,
+    slab_mesh,
+    stairs_of,
+    treads,
+    wells,
+    without,
+)
 from .light import LAMPLIGHT, glass_tint, make_light
 from .props import BuiltProp, build_prop, placement
 from .standing import clear_spot
 from .walls import (
+    SLAB,
     Cut,
     Stretch,
-    ceiling_mesh,
     cut_of,
+    cut_walls,
     find_stretch,
-    floor_mesh,
     skirting,
     stretches,
     wall_line,
@@ -84,7 +100,8 @@ class _Builder:
     mesh_object: list[NDArray[np.int32]] = field(default_factory=list)
     mesh_wall: list[NDArray[np.int32]] = field(default_factory=list)
     solids: list[_Solid] = field(default_factory=list)
-    floors: list[tuple[float, float, float, float]] = field(default_factory=list)
+    floors: dict[float, list[Rect]] = field(default_factory=dict)
+    stairs: list[Stairs] = field(default_factory=list)
     walls: list[Stretch] = field(default_factory=list)
     parts: int = 0
     face_parts: dict[tuple[int, float, int, int], int] = field(default_factory=dict)
@@ -99,10 +116,10 @@ class _Builder:
         openings = []
         for room in rooms:
             for opening in room.openings:
-                index = find_stretch(self.walls, room, opening.wall, opening.at)
-                if index is not None:
+                through = cut_walls(self.walls, room, opening)
+                for index in through:
                     cuts[index].append(cut_of(room, opening))
-                    openings.append((room, opening, index))
+                openings += [(room, opening, through[0])] if through else []
         for index, stretch in enumerate(self.walls):
             self._wall(index, stretch, cuts[index], room_ids)
         for room, opening, index in openings:
@@ -110,14 +127,21 @@ class _Builder:
         for room in rooms:
             for item in room.placed:
                 self._placed(room, item, (room.name, item.name), None, {})
+            for platform in room.platforms:
+                self._platform(room, platform)
+            for flight in room.flights:
+                self._flight(flight)
+        for flight in self.definition.flights:
+            self._flight(flight)
         if self.definition.outdoor:
             self._ground()
 
     def world(self, time: str, room: tuple[str, ...]) -> World:
         mesh = self._glazed(join(self.meshes), time)
         solids = self._packed_solids()
-        kept = [_with_clear_spots(o, solids, self.floors) for o in self.objects]
-        walls = tuple(Wall(s.point(s.start), s.point(s.end), s.height) for s in self.walls)
+        levels = tuple(Level(z, tuple(rects)) for z, rects in sorted(self.floors.items()))
+        kept = [_with_clear_spots(o, solids, levels) for o in self.objects]
+        walls = tuple(Wall(s.point(s.start), s.point(s.end), s.height, s.base) for s in self.walls)
         return World(
             self.definition.name,
             mesh,
@@ -126,9 +150,11 @@ class _Builder:
             tuple(kept),
             solids,
             walls,
-            tuple(self.floors),
+            tuple(rect for level in levels for rect in level.floors),
             make_light(self.definition, time, room),
             self.definition.outdoor,
+            levels,
+            tuple(self.stairs),
         )
 
     def _glazed(self, mesh: Mesh, time: str) -> Mesh:
@@ -178,17 +204,67 @@ class _Builder:
 
     def _room(self, room: Room) -> int:
         owner = len(self.objects)
-        (x, y), (w, d, h) = room.at[:2], room.size
-        inset = WALL_THICKNESS / 2 if room.kind == "room" else 0.0
-        matrix = placement(x, y, 0.0, 0.0)
+        (x, y, z), h = room.at[:3], room.size[2]
+        x0, y0, x1, y1 = inside(room)
+        matrix = placement(x, y, z, 0.0)
         spots = tuple(_spot(s, matrix) for s in room.spots)
-        low, high = (x + inset, y + inset, 0.0), (x + w - inset, y + d - inset, max(h, 2.6))
+        low, high = (x0, y0, z), (x1, y1, z + max(h, 2.6))
         self.objects.append(WorldObject(owner, (room.name,), room.kind, spots, low, high, matrix))
-        self._add(floor_mesh(room, self._parts()), owner, -1)
+        holes = wells(self.definition, z, z)
+        self._add(floor_mesh(room, self._parts(), holes), owner, -1)
         if room.kind == "room":
-            self._add(ceiling_mesh(room, self._parts()), owner, ONE_SIDED)
-        self.floors.append((low[0], low[1], high[0], high[1]))
+            above = wells(self.definition, z + h, z + h + SLAB)
+            self._add(ceiling_mesh(room, self._parts(), above), owner, ONE_SIDED)
+        self._floor(z, without((x0, y0, x1, y1), holes))
+        if z > SLAB:
+            self._slab(room, holes, owner)
         return owner
+
+    def _floor(self, height: float, rects: list[Rect]) -> None:
+        self.floors.setdefault(round(height, 4), []).extend(rects)
+
+    def _slab(self, room: Room, holes: list[Rect], owner: int) -> None:
+        """What is between an upper floor and the ceiling under it."""
+        high = room.at[2] - 0.004
+        rects = without(plan(room), holes)
+        self._add(slab_mesh(rects, high - 0.19, high, room.wall_color, self._parts()), owner, -1)
+        for x0, y0, x1, y1 in rects:
+            middle, half = ((x0 + x1) / 2, (y0 + y1) / 2, high - 0.095), ((x1 - x0) / 2, (y1 - y0) / 2, 0.095)
+            self.solids.append(_Solid(middle, half, 0.0, -1, owner))
+
+    def _platform(self, room: Room, platform: Platform) -> None:
+        owner = len(self.objects)
+        (x, y, z), (w, d, h) = platform.at, platform.size
+        matrix = placement(x, y, z, 0.0)
+        spots = tuple(_spot(s, matrix) for s in platform.spots)
+        low, high = (x, y, z), (x + w, y + d, max(z + 2.0, room.at[2] + room.size[2]))
+        self.objects.append(WorldObject(owner, platform.path, "area", spots, low, high, matrix))
+        self._add(platform_mesh(platform, self._parts(2)), owner, -1)
+        self.solids.append(_Solid((x + w / 2, y + d / 2, z - h / 2), (w / 2, d / 2, h / 2), 0.0, -1, owner))
+        self._floor(z, [(x, y, x + w, y + d)])
+        for flight in platform.flights():
+            self._flight(flight)
+        here = replace(room, kind="area", at=platform.at, size=platform.size)
+        for item in platform.placed:
+            self._placed(here, item, (*platform.path, item.name), None, {})
+
+    def _flight(self, flight: Flight) -> None:
+        owner, matrix = len(self.objects), flight_matrix(flight)
+        stairs = stairs_of(flight)
+        (ax, ay), (lx, ly, lz), (hx, hy, hz) = stairs.ahead, stairs.low, stairs.high
+        facing = math.atan2(ay, ax)
+        spots = (
+            Spot("foot", (lx - 0.45 * ax, ly - 0.45 * ay, lz), facing),
+            Spot("head", (hx + 0.45 * ax, hy + 0.45 * ay, hz), facing),
+        )
+        mesh = flight_mesh(flight, self._parts(1 + len(treads(flight))))
+        low, high = _bounds(mesh, matrix)
+        self.objects.append(WorldObject(owner, flight.path, "stairs", spots, low, high, matrix))
+        self._add(mesh, owner, -1)
+        self.stairs.append(stairs)
+        for (x, y, z), half in flight_boxes(flight):
+            cx, cy, cz = (matrix @ np.array([x, y, z, 1.0]))[:3].tolist()
+            self.solids.append(_Solid((cx, cy, cz), half, flight.turn, -1, owner))
 
     def _wall(self, index: int, stretch: Stretch, cuts: list[Cut], room_ids: list[int]) -> None:
         facade = self.definition.facade
@@ -239,15 +315,13 @@ class _Builder:
         axis, across, start, _ = wall_line(room, opening.wall)
         stretch = self.walls[index]
         x, y = stretch.point(start + opening.at)
-        matrix = placement(x, y, 0.0, _TURN[opening.wall])
-        self._object(
-            (room.name, opening.name), opening.kind, shape.spots, (), build_prop(shape), matrix, index, None
-        )
+        matrix = placement(x, y, room.at[2], _TURN[opening.wall])
+        self._object((room.name, opening.name), opening.kind, shape, (), build_prop(shape), matrix, index)
         if opening.kind != "window" and stretch.before is not None and stretch.after is not None:
             half = WALL_THICKNESS / 2 + 0.02
             low, high = start + opening.at - opening.width / 2, start + opening.at + opening.width / 2
             gap = (low, across - half, high, across + half)
-            self.floors.append(gap if axis == 0 else (gap[1], gap[0], gap[3], gap[2]))
+            self._floor(room.at[2], [gap if axis == 0 else (gap[1], gap[0], gap[3], gap[2])])
 
     # -- props ----------------------------------------------------------------------
 
@@ -272,11 +346,12 @@ class _Builder:
         elif item.wall is not None:
             matrix = self._against_wall(room, item, built)
             if item.up > 0:
-                found = find_stretch(self.walls, room, item.wall, item.at[0])
+                found = find_stretch(self.walls, room, item.wall, item.at[0], item.up)
                 wall = -1 if found is None else found
         else:
-            matrix = placement(room.at[0] + item.at[0], room.at[1] + item.at[1], item.up, item.turn)
-        self._object(path, prop.name, shape.spots, item.spots, built, matrix, wall, shape.grip)
+            x, y, z = room.at
+            matrix = placement(x + item.at[0], y + item.at[1], z + item.up, item.turn)
+        self._object(path, prop.name, shape, item.spots, built, matrix, wall)
         spots = {s.name: s for s in (*reversed(shape.spots), *reversed(item.spots))}
         for child in item.children:
             self._placed(room, child, (*path, child.name), matrix, spots)
@@ -290,57 +365,84 @@ class _Builder:
         inward = -1.0 if item.wall in ("north", "east") else 1.0
         along, off = start + item.at[0], across + inward * (inset + depth)
         x, y = (along, off) if axis == 0 else (off, along)
-        return placement(x, y, item.up, _TURN[item.wall] + item.turn)
+        return placement(x, y, room.at[2] + item.up, _TURN[item.wall] + item.turn)
 
     def _object(
         self,
         path: tuple[str, ...],
         kind: str,
-        spots: tuple[PropSpot, ...],
+        shape: PropShape,
         extra: tuple[PropSpot, ...],
         built: BuiltProp,
         matrix: Matrix,
         wall: int,
-        grip: tuple[float, ...] | None,
     ) -> None:
-        owner = len(self.objects)
-        mesh = built.mesh
-        first = self._parts(int(mesh.parts.max()) + 1 if len(mesh.parts) else 0)
-        mesh = Mesh(
-            mesh.vertices, mesh.faces, mesh.normals, mesh.colors, mesh.parts + np.int32(first), mesh.materials
-        )
+        owner, grip = len(self.objects), shape.grip
+        mesh = self._numbered(built.mesh)
         placed = mesh.transformed(matrix)
         low, high = _bounds(placed, matrix)
-        named = [_spot(s, matrix) for s in (*extra, *spots)]
+        named = [_spot(s, matrix) for s in (*extra, *shape.spots)]
         if grip is not None:
             x, y, z = (matrix @ np.array([*grip, 1.0]))[:3].tolist()
             named.append(Spot("grip", (x, y, z)))
-        self.objects.append(
-            WorldObject(
-                owner,
-                path,
-                kind,
-                tuple(named),
-                low,
-                high,
-                matrix,
-                mesh if grip is not None else None,
-                (grip[0], grip[1], grip[2]) if grip is not None else None,
-            )
-        )
+        item = WorldObject(owner, path, kind, tuple(named), low, high, matrix)
         if grip is not None:
+            self.objects.append(replace(item, mesh=mesh, grip=(grip[0], grip[1], grip[2])))
             return
+        self.objects.append(item)
         self._add(placed, owner, wall)
+        self._solids(built, matrix, wall, owner)
+        for part in shape.parts:
+            self._part(item, part, wall)
+
+    def _numbered(self, mesh: Mesh) -> Mesh:
+        """The mesh with parts of its own."""
+        first = self._parts(int(mesh.parts.max()) + 1 if len(mesh.parts) else 0)
+        parts = mesh.parts + np.int32(first)
+        return Mesh(mesh.vertices, mesh.faces, mesh.normals, mesh.colors, parts, mesh.materials)
+
+    def _solids(self, built: BuiltProp, matrix: Matrix, wall: int, owner: int) -> None:
         yaw = math.atan2(matrix[1, 0], matrix[0, 0])
         for centre, half in zip(built.centre, built.half, strict=True):
             x, y, z = (matrix @ np.array([*centre, 1.0]))[:3].tolist()
             self.solids.append(_Solid((x, y, z), (half[0], half[1], half[2]), yaw, wall, owner))
 
+    def _part(self, item: WorldObject, part: PropPart, wall: int) -> None:
+        """A part that moves: an object of its own, and the spots it carries named on its owner too."""
+        owner, built = len(self.objects), build_prop(part.shape)
+        mesh = self._numbered(built.mesh)
+        handle = next((s.at for s in part.shape.spots if s.name == "handle"), None)
+        middle = (mesh.vertices.min(0) + mesh.vertices.max(0)) / 2
+        hinge = Hinge(
+            part.kind,
+            np.array(part.at, np.float64),
+            np.array(part.axis, np.float64),
+            part.open,
+            np.array(handle if handle is not None else middle.tolist(), np.float64),
+            item.world_from_object,
+            item.id,
+            np.stack([built.centre, built.half], axis=1),
+            part.way,
+        )
+        matrix = hinge.matrices(part.ajar)
+        spots = tuple(_spot(s, matrix) for s in part.shape.spots)
+        low, high = _bounds(mesh.transformed(matrix), matrix)
+        path = (*item.path, part.name)
+        self.objects.append(
+            WorldObject(owner, path, "part", spots, low, high, matrix, mesh, None, hinge, part.ajar)
+        )
+        carried = (*self.objects[item.id].spots, *(s for s in spots if s.name != "stand"))
+        self.objects[item.id] = replace(self.objects[item.id], spots=carried)
+        centres, halves, yaw = hinge.solids(part.ajar)
+        for centre, half in zip(centres.tolist(), halves.tolist(), strict=True):
+            self.solids.append(_Solid(tuple(centre), tuple(half), yaw, wall, owner))
+
     def _ground(self) -> None:
         """Earth all around, a little lower, so that the set does not end in the air."""
-        if not self.floors:
+        rects = [rect for floors in self.floors.values() for rect in floors]
+        if not rects:
             return
-        box = np.array(self.floors)
+        box = np.array(rects)
         (x0, y0), (x1, y1) = box[:, :2].min(0) - GROUND_REACH, box[:, 2:].max(0) + GROUND_REACH
         gx, gy = np.meshgrid(np.linspace(x0, x1, 9), np.linspace(y0, y1, 9), indexing="ij")
         vertices = np.stack([gx.ravel(), gy.ravel(), np.full(gx.size, -0.06)], 1)
@@ -349,7 +451,8 @@ class _Builder:
         quads = np.stack([a, a + 9, a + 10, a + 1], 1)
         faces = np.concatenate([quads[:, [0, 1, 2]], quads[:, [0, 2, 3]]])
         normals = np.tile([0.0, 0.0, 1.0], (len(vertices), 1))
-        ground = painted(vertices, faces, normals, self.definition.ground, "grass", self._parts())
+        hue, material = self.definition.ground, self.definition.earth
+        ground = painted(vertices, faces, normals, hue, material, self._parts())
         self._add(ground, 0, -1)
 
 
@@ -370,16 +473,14 @@ def _bounds(mesh: Mesh, matrix: Matrix) -> tuple[tuple[float, float, float], tup
     return (low[0], low[1], low[2]), (high[0], high[1], high[2])
 
 
-def _with_clear_spots(
-    item: WorldObject, solids: Solids, floors: list[tuple[float, float, float, float]]
-) -> WorldObject:
+def _with_clear_spots(item: WorldObject, solids: Solids, levels: tuple[Level, ...]) -> WorldObject:
     """The object with its `stand` spots moved to free floor nearby, or left out where there is none."""
     spots = []
     for spot in item.spots:
         if spot.name != "stand":
             spots.append(spot)
             continue
-        clear = clear_spot(spot, solids, floors)
+        clear = clear_spot(spot, solids, levels)
         if clear is not None:
             spots.append(clear)
     return replace(item, spots=tuple(spots))

@@ -7,6 +7,7 @@ A prop's front looks along -Y, and its foot stands on z = 0.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 
@@ -16,15 +17,18 @@ from ..evaluate import Bound, Quantity, parameter_env, read_parameters
 from ..source import Span
 from .colours import Colour, checked_colour
 from .reader import Reader, unknown_entry
-from .types import DefinitionBase
+from .types import DefinitionBase, ModelFile
 
 Point = tuple[float, ...]
 
 PRIMITIVES = ("box", "cylinder", "sphere", "cone", "lathe", "extrude", "tube")
-ENTRIES = (*PRIMITIVES, "spot", "grip", "solid", "repeat")
+MOVING = ("hinge", "slide")
+ENTRIES = (*PRIMITIVES, "spot", "grip", "solid", *MOVING, "repeat")
+PART_ENTRIES = (*PRIMITIVES, "spot", "solid", "repeat")
 #: Same words as :data:`runtime.mesh.MATERIALS`, which the language may not import.
 MATERIALS = ("plain", "wood", "tile", "brick", "grass", "asphalt", "cloth", "glass", "glow", "carpet",
-             "concrete", "plaster")  # fmt: skip
+             "concrete", "plaster", "water", "sand", "stone", "metal", "leaves", "snow", "earth", "marble",
+             "cobble", "parquet", "plate")  # fmt: skip
 #: Directions a shape's own axis may be laid along.
 AXES = ("x", "y", "z", "-x", "-y", "-z")
 MAX_REPEAT = 200
@@ -81,25 +85,50 @@ class SolidBox:
 
 
 @dataclass(frozen=True)
+class PropPart:
+    """A part that moves: ``hinge NAME, at …, axis z, open 95deg { … }``, ``slide NAME, along …, open 40cm``.
+
+    All in the prop's coordinates, with the part closed. kind: hinge or slide
+    at: a point of the axis (hinge); axis: unit vector it turns about or slides along
+    open: radians (right-handed about the axis) or metres when fully open; ajar: share of it at first, 0..1
+    way: one passes where it closes an opening: nobody walks around it, it is opened on the way
+    """
+
+    name: str
+    kind: str
+    at: Point
+    axis: Point
+    open: float
+    ajar: float
+    way: bool
+    shape: PropShape
+
+
+@dataclass(frozen=True)
 class PropShape:
     """A prop with its arguments filled in.
 
     solids: None where they follow from the primitives, () for nothing in the way
     grip: where a hand takes hold, None for what cannot be carried
+    parts: what moves on it, with names of their own; model: the file it comes out of
     """
 
     primitives: tuple[Primitive, ...]
     spots: tuple[PropSpot, ...]
     grip: Point | None
     solids: tuple[SolidBox, ...] | None
+    parts: tuple[PropPart, ...] = ()
+    model: ModelFile | None = None
 
 
 @dataclass(frozen=True)
 class PropDef(DefinitionBase):
-    """A prop as defined. ``spots``: names, in order; ``movable``: it has a grip."""
+    """A prop as defined. ``spots``: names, in order, those of its parts too; ``movable``: it has a grip;
+    ``parts``: names of what opens."""
 
     spots: tuple[str, ...]
     movable: bool
+    parts: tuple[str, ...]
     body: tuple[ast.Entry, ...] = field(compare=False, repr=False)
 
     def shape(
@@ -114,9 +143,17 @@ def read_prop(definition: ast.Definition, report: Report) -> PropDef | None:
     """Check a prop's definition, with its defaults filled in."""
     parameters = read_parameters(definition.parameters, report)
     shape = _shape(definition.body, parameter_env(parameters), report, strict=True)
-    spots = tuple(dict.fromkeys(spot.name for spot in shape.spots))
+    moving = [spot.name for part in shape.parts for spot in part.shape.spots]
+    spots = tuple(dict.fromkeys([*(spot.name for spot in shape.spots), *moving]))
+    parts = tuple(part.name for part in shape.parts)
     return PropDef(
-        definition.name.text, parameters, definition.span, spots, shape.grip is not None, definition.body
+        definition.name.text,
+        parameters,
+        definition.span,
+        spots,
+        shape.grip is not None,
+        parts,
+        definition.body,
     )
 
 
@@ -145,16 +182,23 @@ def unrolled(
 
 
 def _shape(
-    body: tuple[ast.Entry, ...], env: Mapping[str, Bound], report: Report, strict: bool = False
+    body: tuple[ast.Entry, ...],
+    env: Mapping[str, Bound],
+    report: Report,
+    strict: bool = False,
+    known: tuple[str, ...] = ENTRIES,
 ) -> PropShape:
     primitives: list[Primitive] = []
     spots: list[PropSpot] = []
+    parts: list[PropPart] = []
     grip: Point | None = None
     solids: list[SolidBox] | None = None
     for entry, names in unrolled(body, env, report):
         reader = Reader(entry, names, report)
         head = reader.head
-        if head in PRIMITIVES:
+        if head not in known:
+            unknown_entry(entry, known, "a prop" if known == ENTRIES else "a part of a prop", report)
+        elif head in PRIMITIVES:
             primitive = _primitive(reader, strict)
             if primitive is not None:
                 primitives.append(primitive)
@@ -163,14 +207,44 @@ def _shape(
         elif head == "grip":
             grip = reader.value_point(0, None, 3)
             reader.done()
-        elif head == "solid":
+        elif head in MOVING:
+            part = _part(reader, [p.name for p in parts], strict)
+            if part is not None:
+                parts.append(part)
+        else:
             solids = solids or []
             box = _solid(reader)
             if box is not None:
                 solids.append(box)
-        else:
-            unknown_entry(entry, ENTRIES, "a prop", report)
-    return PropShape(tuple(primitives), tuple(spots), grip, None if solids is None else tuple(solids))
+    boxes = None if solids is None else tuple(solids)
+    return PropShape(tuple(primitives), tuple(spots), grip, boxes, tuple(parts))
+
+
+def _part(reader: Reader, taken: list[str], strict: bool) -> PropPart | None:
+    """A ``hinge`` or a ``slide``; one of a name that is there already is numbered, as what is repeated is."""
+    value, kind = reader.value(0), reader.head
+    name = value.text if isinstance(value, ast.Name) else reader.value_word(0)
+    axis: Point
+    if kind == "hinge":
+        at = reader.point("at", (0.0, 0.0, 0.0), 3)
+        axis = _UNIT[_along(reader, "axis")]
+        open, ajar = reader.angle("open", math.pi / 2), reader.angle("ajar", 0.0)
+    else:
+        at, along = (0.0, 0.0, 0.0), reader.point("along", (0.0, -1.0, 0.0), 3, "number")
+        length = math.hypot(*along)
+        axis = tuple(v / length for v in along) if length > 1e-9 else (0.0, -1.0, 0.0)
+        open, ajar = reader.length("open", 0.4), reader.length("ajar", 0.0)
+    way = reader.flag("way")
+    shape = _shape(reader.body(), reader.env, reader.report, strict, PART_ENTRIES)
+    reader.done()
+    if abs(open) < 1e-6 or not shape.primitives:
+        lacks = "`open` more than nothing" if shape.primitives else "shapes in braces: what moves"
+        if strict:
+            reader.report.error("VDS240", reader.span, label=f"`{kind}` needs {lacks}")
+        return None
+    count = sum(1 for other in taken if other == name or other.rpartition("_")[0] == name)
+    share = min(max(ajar / open, 0.0), 1.0)
+    return PropPart(f"{name}_{count + 1}" if count else name, kind, at, axis, open, share, way, shape)
 
 
 def read_spot(reader: Reader, size: int) -> PropSpot:
@@ -274,8 +348,15 @@ def _points(reader: Reader, name: str, size: int) -> tuple[Point, ...]:
     return points
 
 
-def _along(reader: Reader) -> str:
-    values = reader.option("along")
+_UNIT: dict[str, Point] = {
+    sign + name: tuple((-1.0 if sign else 1.0) * float(i == k) for k in range(3))
+    for i, name in enumerate("xyz")
+    for sign in ("", "-")
+}
+
+
+def _along(reader: Reader, option: str = "along") -> str:
+    values = reader.option(option)
     if values is None:
         return "z"
     value = values[0] if len(values) == 1 else None
@@ -285,7 +366,7 @@ def _along(reader: Reader) -> str:
     if isinstance(value, ast.Name) and sign + value.text in AXES:
         return sign + value.text
     reader.report.error(
-        "VDS104", _option_span(reader, "along"), label="`along` is one of x, y, z, -x, -y and -z"
+        "VDS104", _option_span(reader, option), label=f"`{option}` is one of x, y, z, -x, -y and -z"
     )
     return "z"
 

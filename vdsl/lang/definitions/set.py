@@ -8,63 +8,43 @@ on a prop in that prop's.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from typing import Protocol
 
 from .. import ast
 from ..diagnostics import Report, listing, nearest
-from ..evaluate import Bound, evaluate_arguments
+from ..evaluate import Bound
 from ..source import Span
-from .colours import Colour, checked_colour, colour
+from .colours import Colour, checked_colour
+from .levels import Flight, Platform, flight_node, platform_node, read_flight, read_platform, settled
+from .placing import (
+    WALLS,
+    Placed,
+    PropCatalog,
+    call_arguments,
+    check_names,
+    find_prop,
+    numbered,
+    placed_node,
+    read_call,
+    read_placed,
+    walk_placed,
+)
 from .prop import MATERIALS, Point, PropDef, PropSpot, read_spot, unrolled
 from .reader import Reader, unknown_entry
 from .types import DefinitionBase, SetNode
 
-WALLS = ("north", "south", "east", "west")
 TIMES = ("dawn", "day", "dusk", "night")
+#: Where a set's light comes from, whatever the hour: windows and sky, or lamps of a mood.
+LIGHTS = ("daylight", "lamps", "cool", "warm", "dim")
 OPENINGS = ("door", "window", "doorway")
-SET_ENTRIES = ("time", "facade", "ground", "room", "area", "repeat")
-ROOM_ENTRIES = (*OPENINGS, "place", "spot", "repeat")
-PLACE_ENTRIES = ("place", "spot", "repeat")
+SET_ENTRIES = ("time", "light", "facade", "ground", "room", "area", "stairs", "repeat")
+ROOM_ENTRIES = (*OPENINGS, "place", "spot", "platform", "stairs", "repeat")
+AREA_ENTRIES = ("place", "spot", "platform", "stairs", "repeat")
 #: Thickness of a wall; rooms that share a wall meet in its middle.
 WALL_THICKNESS = 0.12
 
 _DOOR_SIZE = {"door": (0.88, 2.05, 0.0), "doorway": (1.2, 2.1, 0.0), "window": (1.4, 1.3, 0.9)}
-
-
-class PropCatalog(Protocol):
-    """What is needed of the library."""
-
-    def names(self, kind: str) -> object: ...
-    def get(self, kind: str, name: str) -> object: ...
-
-
-@dataclass(frozen=True)
-class Placed:
-    """``place table = table(width 1.3m), at (2, 1)m, turn 90deg { … }``.
-
-    at: x, y in the room (or in the parent prop, from its spot ``on``); up: metres above that floor
-    wall: the prop's back is put against it, and ``at`` is one number, along it from its west or south end
-    call: the prop and its arguments as written; env: names these may use
-    """
-
-    name: str
-    call: ast.Call = field(compare=False, repr=False)
-    env: Mapping[str, Bound] = field(compare=False, repr=False)
-    at: Point
-    up: float
-    turn: float
-    wall: str | None
-    on: str | None
-    spots: tuple[PropSpot, ...]
-    children: tuple[Placed, ...]
-    span: Span = field(compare=False, repr=False)
-    on_span: Span = field(compare=False, repr=False)
-
-    @property
-    def prop(self) -> str:
-        return self.call.callee.text
 
 
 @dataclass(frozen=True)
@@ -91,7 +71,10 @@ class Opening:
 
 @dataclass(frozen=True)
 class Room:
-    """A room (with walls) or an area (outdoors, without). at: south-west corner; size: x, y, height."""
+    """A room (with walls) or an area (outdoors, without).
+
+    at: south-west corner and height of the floor; size: x, y, height
+    """
 
     name: str
     kind: str
@@ -103,52 +86,76 @@ class Room:
     openings: tuple[Opening, ...]
     placed: tuple[Placed, ...]
     spots: tuple[PropSpot, ...]
+    platforms: tuple[Platform, ...]
+    flights: tuple[Flight, ...]
     span: Span = field(compare=False, repr=False)
 
 
 @dataclass(frozen=True)
 class SetDef(DefinitionBase):
-    """A set as defined. ``root`` is its tree of names; ``facade`` colours walls outside; ``ground`` is
-    the colour of the earth around an outdoor set."""
+    """A set as defined. ``root`` is its tree of names; ``light``: one of :data:`LIGHTS`; ``facade``
+    colours walls outside; ``ground`` and ``earth`` are colour and material of the land around an
+    outdoor set; ``flights``: its stairs, those of rooms aside."""
 
     root: SetNode
     outdoor: bool
     time: str
+    light: str
     rooms: tuple[Room, ...]
     facade: Colour
     ground: Colour
+    earth: str
+    flights: tuple[Flight, ...] = ()
 
 
 def read_set(definition: ast.Definition, report: Report) -> SetDef | None:
     """Check a set by itself: all but the props it places."""
     if definition.parameters:
         report.error("VDS110", definition.parameters[0].span, label="a set has no parameters")
-    time, rooms = "day", []
-    facade, ground = (0.89, 0.86, 0.8), (0.77, 0.8, 0.7)
+    time, light, rooms = "day", LIGHTS[0], []
+    flights: list[Flight] = []
+    facade, ground, earth = (0.89, 0.86, 0.8), (0.77, 0.8, 0.7), "grass"
     for entry, env in unrolled(definition.body, {}, report):
         reader = Reader(entry, env, report)
         if reader.head == "time":
             time = reader.value_word(0, "day", TIMES)
             reader.done()
+        elif reader.head == "light":
+            light = reader.value_word(0, LIGHTS[0], LIGHTS)
+            reader.done()
         elif reader.head in ("facade", "ground"):
             got = checked_colour(reader.value_word(0), entry.span, report)
             facade, ground = (got, ground) if reader.head == "facade" else (facade, got)
+            earth = reader.word("material", earth, MATERIALS) if reader.head == "ground" else earth
             reader.done()
         elif reader.head in ("room", "area"):
             room = _room(reader)
             if room is not None:
                 rooms.append(room)
+        elif reader.head == "stairs":
+            flight = read_flight(reader, (), (0.0, 0.0, 0.0))
+            flights += [flight] if flight is not None else []
         else:
             unknown_entry(entry, SET_ENTRIES, "a set", report)
     if not rooms:
         report.error("VDS111", definition.name.span, label="this set has no `room` and no `area`")
         return None
-    _check_names([(r.name, r.span) for r in rooms], report)
+    check_names([(r.name, r.span) for r in rooms] + [(f.path[-1], f.span) for f in flights], report)
     _check_walls(rooms, report)
+    floors = {r.name: r.at[2] for r in rooms}
+    rooms = [replace(r, flights=_settled(r.flights, floors, report)) for r in rooms]
+    outside = _settled(tuple(flights), floors, report)
     name = definition.name.text
-    root = SetNode(name, "set", None, (), tuple(_room_node(r) for r in rooms), definition.span)
+    nodes = (*(_room_node(r) for r in rooms), *map(flight_node, outside))
+    root = SetNode(name, "set", None, (), nodes, definition.span)
     outdoor = all(r.kind == "area" for r in rooms)
-    return SetDef(name, (), definition.span, root, outdoor, time, tuple(rooms), facade, ground)
+    hues = (facade, ground, earth)
+    return SetDef(name, (), definition.span, root, outdoor, time, light, tuple(rooms), *hues, outside)
+
+
+def _settled(flights: tuple[Flight, ...], floors: dict[str, float], report: Report) -> tuple[Flight, ...]:
+    found = (settled(f, floors, report) for f in flights)
+    return tuple(f for f in found if f is not None)
 
 
 # --- reading ------------------------------------------------------------------------
@@ -158,7 +165,7 @@ def _room(reader: Reader) -> Room | None:
     entry, report, kind = reader.entry, reader.report, reader.head
     default_floor, default_color = ("wood", "oak") if kind == "room" else ("grass", "moss")
     name = reader.value_word(0)
-    at = reader.point("at", (0.0, 0.0), 2)
+    at = reader.point("at", (0.0, 0.0))
     size = reader.point("size", (), 3 if kind == "room" else 2)
     floor = reader.word("floor", default_floor, MATERIALS)
     floor_color = checked_colour(reader.colour("floor-color", default_color), entry.span, report)
@@ -173,7 +180,12 @@ def _room(reader: Reader) -> Room | None:
     if min(size) <= 0:
         report.error("VDS101", entry.span, label="a size here is zero or less")
         return None
+    if len(at) not in (2, 3):
+        report.error("VDS032", entry.span, label="`at` is (x, y), or (x, y, height)")
+    corner = (at[0], at[1], at[2] if len(at) == 3 else 0.0) if len(at) > 1 else (0.0, 0.0, 0.0)
     openings: list[Opening] = []
+    platforms: list[Platform] = []
+    flights: list[Flight] = []
     placed: list[Placed] = []
     spots: list[PropSpot] = []
     for child, env in unrolled(body, reader.env, report):
@@ -183,36 +195,38 @@ def _room(reader: Reader) -> Room | None:
             if opening is not None:
                 openings.append(opening)
         elif inner.head == "place":
-            item = _placed(inner, parent=False)
+            item = read_placed(inner, parent=False)
             if item is not None:
                 placed.append(item)
         elif inner.head == "spot":
             spots.append(read_spot(inner, 2))
+        elif inner.head == "platform":
+            platform = read_platform(inner, (name,), corner)
+            platforms += [platform] if platform is not None else []
+        elif inner.head == "stairs":
+            flight = read_flight(inner, (name,), corner)
+            flights += [flight] if flight is not None else []
         else:
-            known, where = (ROOM_ENTRIES, "a room") if kind == "room" else (PLACE_ENTRIES, "an area")
+            known, where = (ROOM_ENTRIES, "a room") if kind == "room" else (AREA_ENTRIES, "an area")
             unknown_entry(child, known, where, report)
-    placed = _numbered(placed)
-    _check_names([(o.name, o.span) for o in openings] + [(p.name, p.span) for p in placed], report)
+    placed = numbered(placed)
+    named = [(o.name, o.span) for o in openings] + [(p.name, p.span) for p in placed]
+    named += [(p.path[-1], p.span) for p in platforms] + [(f.path[-1], f.span) for f in flights]
+    check_names(named, report)
     full = size if len(size) == 3 else (*size, 0.0)
     span = entry.head.span.to(entry.values[0].span) if entry.values else entry.span
     colors = (floor_color, wall_color)
-    return Room(name, kind, at, full, floor, *colors, tuple(openings), tuple(placed), tuple(spots), span)
-
-
-def _call(reader: Reader, default: str) -> ast.Call:
-    if not reader.entry.bound:
-        name = ast.Name((default,), reader.entry.head.span)
-        if reader.entry.values:
-            name = ast.Name((default,), reader.entry.values[0].span)
-        return ast.Call(name, (), name.span)
-    return reader.bound_call() or ast.Call(ast.Name((default,), reader.span), (), reader.span)
+    levels = (tuple(platforms), tuple(flights))
+    return Room(
+        name, kind, corner, full, floor, *colors, tuple(openings), tuple(placed), tuple(spots), *levels, span
+    )
 
 
 def _opening(reader: Reader) -> Opening | None:
     kind = reader.head
     width, height, sill = _DOOR_SIZE[kind]
     name = reader.value_word(0, kind)
-    call = _call(reader, kind)
+    call = read_call(reader, kind)
     if not reader.entry.bound:
         call = ast.Call(ast.Name((kind,), reader.entry.head.span), (), reader.entry.head.span)
     wall = reader.word("wall", "", WALLS)
@@ -235,77 +249,14 @@ def _opening(reader: Reader) -> Opening | None:
     return Opening(name, kind, call, reader.env, wall, at, width, height, sill, turn, to, reader.span)
 
 
-def _placed(reader: Reader, parent: bool) -> Placed | None:
-    name = reader.value_word(0)
-    call = _call(reader, name)
-    wall = None if parent else reader.word("wall", None, WALLS)
-    on = reader.word("on", None) if parent else None
-    if wall is None:
-        at = reader.point("at", (0.0, 0.0), 2)
-    else:
-        along = reader.length("at", None)
-        if along is None:
-            reader.missing("`at`, its middle measured from the wall's west or south end")
-        at = (along or 0.0,)
-    up = reader.length("up", 0.0)
-    turn = reader.angle("turn", 0.0)
-    body = reader.body()
-    reader.done()
-    spots: list[PropSpot] = []
-    children: list[Placed] = []
-    for child, env in unrolled(body, reader.env, reader.report):
-        inner = Reader(child, env, reader.report)
-        if inner.head == "place":
-            item = _placed(inner, parent=True)
-            if item is not None:
-                children.append(item)
-        elif inner.head == "spot":
-            spots.append(read_spot(inner, 3))
-        else:
-            unknown_entry(child, PLACE_ENTRIES, "a placed prop", reader.report)
-    if not name:
-        return None
-    children = _numbered(children)
-    _check_names([(c.name, c.span) for c in children], reader.report)
-    on_span = next((o.span for o in reader.entry.options if o.name.text == "on"), reader.span)
-    return Placed(
-        name, call, reader.env, at, up, turn, wall, on, tuple(spots), tuple(children), reader.span, on_span
-    )
-
-
 def _room_node(room: Room) -> SetNode:
     spots = tuple(dict.fromkeys(s.name for s in room.spots))
     parts = [SetNode(o.name, "part", o.call.callee.text, (), (), o.span) for o in room.openings]
-    return SetNode(room.name, room.kind, None, spots, (*parts, *map(_placed_node, room.placed)), room.span)
-
-
-def _placed_node(item: Placed) -> SetNode:
-    spots = tuple(dict.fromkeys(s.name for s in item.spots))
-    return SetNode(item.name, "object", item.prop, spots, tuple(map(_placed_node, item.children)), item.span)
+    parts += [*map(platform_node, room.platforms), *map(flight_node, room.flights)]
+    return SetNode(room.name, room.kind, None, spots, (*parts, *map(placed_node, room.placed)), room.span)
 
 
 # --- checking -----------------------------------------------------------------------
-
-
-def _numbered(items: list[Placed]) -> list[Placed]:
-    """What a ``repeat`` places again and again is called tree, tree_2, tree_3 …"""
-    count: dict[int, int] = {}
-    found = []
-    for item in items:
-        count[item.span.start] = times = count.get(item.span.start, 0) + 1
-        found.append(item if times == 1 else replace(item, name=f"{item.name}_{times}"))
-    return found
-
-
-def _check_names(named: list[tuple[str, Span]], report: Report) -> None:
-    seen: dict[str, Span] = {}
-    for name, span in named:
-        if name in seen:
-            report.error(
-                "VDS112", span, label=f"`{name}` is already here", notes=[(seen[name], "the first one")]
-            )
-        elif name:
-            seen[name] = span
 
 
 def wall_length(room: Room, wall: str) -> float:
@@ -341,16 +292,7 @@ def _behind(room: Room, opening: Opening, other: Room) -> bool:
     inside = (
         other.at[i] < middle - opening.width / 2 and middle + opening.width / 2 < other.at[i] + other.size[i]
     )
-    return abs(far - near) < 1e-3 and inside
-
-
-def walk_placed(
-    items: tuple[Placed, ...], parent: Placed | None = None
-) -> Iterator[tuple[Placed, Placed | None]]:
-    """Every placed prop with the one it stands on."""
-    for item in items:
-        yield item, parent
-        yield from walk_placed(item.children, item)
+    return abs(far - near) < 1e-3 and abs(room.at[2] - other.at[2]) < 1e-3 and inside
 
 
 def check_set(definition: SetDef, catalog: PropCatalog, report: Report) -> None:
@@ -360,7 +302,8 @@ def check_set(definition: SetDef, catalog: PropCatalog, report: Report) -> None:
             prop = find_prop(opening.call, catalog, report)
             if prop is not None:
                 call_arguments(opening.call, opening.env, prop, report)
-        for item, parent in walk_placed(room.placed):
+        standing = (*room.placed, *(p for platform in room.platforms for p in platform.placed))
+        for item, parent in walk_placed(standing):
             prop = find_prop(item.call, catalog, report)
             if prop is not None:
                 call_arguments(item.call, item.env, prop, report)
@@ -374,37 +317,3 @@ def check_set(definition: SetDef, catalog: PropCatalog, report: Report) -> None:
                     help=f"it has {listing(sorted(spots))}" if spots else "it has no spots",
                     suggestion=nearest(item.on, spots),
                 )  # fmt: skip
-
-
-def find_prop(call: ast.Call, catalog: PropCatalog, report: Report) -> PropDef | None:
-    """The prop a call names, or None where it was reported to be unknown."""
-    name = call.callee.text
-    names = [str(n) for n in catalog.names("prop")]  # type: ignore[attr-defined]
-    found = catalog.get("prop", name) if name in names else None
-    if isinstance(found, PropDef):
-        return found
-    if name not in names:
-        meant = nearest(name, names)
-        report.error(
-            "VDS115", call.callee.span, label=f"there is no prop `{name}`", suggestion=meant, fix=meant
-        )
-    return None
-
-
-def call_arguments(
-    call: ast.Call, env: Mapping[str, Bound], prop: PropDef, report: Report
-) -> dict[str, float | str]:
-    """The arguments of a placed prop; lengths below zero are reported and left out."""
-    found = evaluate_arguments(call.arguments, prop.parameters, env, report, prop.name)
-    kinds = {spec.name: spec for spec in prop.parameters}
-    for argument in call.arguments:
-        value = found.get(argument.name.text)
-        spec = kinds.get(argument.name.text)
-        if spec is None or value is None:
-            continue
-        if spec.kind == "length" and isinstance(value, float) and value < 0:
-            report.error("VDS101", argument.span, label=f"`{spec.name}` is below zero")
-            del found[spec.name]
-        elif isinstance(value, str) and colour(str(spec.default)) is not None:
-            checked_colour(value, argument.values[0].span, report)
-    return found

@@ -162,11 +162,16 @@ class Definition:
 
 @dataclass(frozen=True)
 class FileDefinition:
-    """``prop lamp = "lamp.glb"``: a definition whose body is another program's file."""
+    """``prop lamp = "lamp.glb", height 40cm { … }``: a definition out of another program's file.
+
+    body: its entries, () where no braces were written
+    """
 
     kind: str
     name: Name
     path: Text
+    options: tuple[Option, ...]
+    body: tuple[Entry, ...]
     span: Span = field(compare=False, repr=False)
 
 

@@ -138,16 +138,14 @@ class Builder:
             if child.data == "bound":
                 bound = self.values(child)
             else:
-                options.append(
-                    ast.Option(
-                        self.name(_token(child.children[0])),
-                        self.values(_tree(child.children[1])),
-                        self.span(child),
-                    )
-                )
+                options.append(self._entry_option(child))
         return ast.Entry(
             self.name(_token(head)), self.values(_tree(values)), bound, tuple(options), None, self.span(node)
         )
+
+    def _entry_option(self, node: Tree[Token]) -> ast.Option:
+        name, values = _token(node.children[0]), _tree(node.children[1])
+        return ast.Option(self.name(name), self.values(values), self.span(node))
 
     def definition_head(self, node: Tree[Token]) -> tuple[str, ast.Name, tuple[ast.Parameter, ...]]:
         kind, target = node.children
@@ -158,8 +156,11 @@ class Builder:
         return str(kind), call.callee, parameters
 
     def definition_file(self, node: Tree[Token]) -> ast.FileDefinition:
-        kind, name, path = (_token(child) for child in node.children)
-        return ast.FileDefinition(str(kind), self.name(name), self.text(path), self.span(node))
+        kind, name, path = (_token(child) for child in node.children[:3])
+        options = tuple(self._entry_option(_tree(child)) for child in node.children[3:])
+        return ast.FileDefinition(
+            str(kind), self.name(name), self.text(path), options, (), self.span(node)
+        )
 
     # -- the story -------------------------------------------------------------------
 

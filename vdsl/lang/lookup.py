@@ -9,6 +9,7 @@ from dataclasses import dataclass
 
 from . import ast, words
 from .catalog import CatalogLike
+from .definitions.files import character_cast
 from .definitions.types import DefinitionBase, SetNode
 from .diagnostics import Report, listing, nearest
 from .evaluate import evaluate_arguments
@@ -57,13 +58,9 @@ class Lookup:
         """A character as dressed; without a cast where that is not known."""
         name = line.name.text
         if isinstance(line.cast, ast.Text):
-            self.report.error(
-                "VDS017",
-                line.cast.span,
-                label="characters from files are not read yet",
-                help=f"take one of the library's: {listing(self.catalog.names('cast'))}",
-            )
-            return Character(name, "", (), line.span)
+            cast_name = character_cast(line.cast).name.text
+            known = self.catalog.get("cast", cast_name) is not None  # else it is reported
+            return Character(name, cast_name if known else "", (), line.span)
         callee = line.cast.callee if isinstance(line.cast, ast.Call) else line.cast
         arguments: dict[str, float | str] = {}
         cast = self.definition("cast", callee)

@@ -7,6 +7,7 @@ logical line with a mistake is left out of the tree and reading goes on at the n
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 
 from lark import Tree
 from lark.exceptions import UnexpectedInput
@@ -24,6 +25,8 @@ from .syntax_errors import explain_syntax, unknown_statement
 _PLACING = re.compile(r"[ \t]+(?:at|on|in|facing|sitting|standing|kneeling|crouching|lying)\b")
 _FIRST_WORD = re.compile(r"[^\W\d][\w-]*")
 _FIRST_WORDS = re.compile(r"([^\W\d][\w-]*)(?:[ \t]+\"?([^\W\d][\w-]*))?")
+#: A definition whose body is another program's file.
+_FROM_FILE = re.compile(r"[a-z]+[ \t]+[^({=]*=")
 _HEADERS = ("fps", "size", "aspect", "seed", "rig", "style", "takes", "proposals")
 _TRANSITIONS = ("cut", "dissolve", "fade-out", "fade-in", "wipe")
 _KINDS = ("set", "prop", "cast", "action")
@@ -119,7 +122,7 @@ class _Reader:
         text = self.source.text[line.start : line.end]
         word = _FIRST_WORD.match(text)
         kind = STATEMENTS.get(word.group()) if word else None
-        if kind == "definition_head" and line.body is None and "=" in text:
+        if kind == "definition_head" and _FROM_FILE.match(text):
             return "definition_file"
         if kind is not None:
             return kind
@@ -165,7 +168,8 @@ class _Reader:
         builder = Builder(self.source, line.start, self.report)
         try:
             if start == "definition_file":
-                return builder.definition_file(tree)
+                made = builder.definition_file(tree)
+                return replace(made, body=self._entries(line))
             kind, name, parameters = builder.definition_head(tree)
         except TooDeepError:
             self._too_deep(line)

@@ -8,11 +8,12 @@ place in the file they are in. Importing this module reads nothing.
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from importlib import import_module
 from pathlib import Path
 
 from ..lang import ast
+from ..lang.definitions.files import FileDef, character_cast, read_file
 from ..lang.definitions.types import DefinitionBase
 from ..lang.diagnostics import Report
 from ..lang.files import used_scripts
@@ -32,7 +33,8 @@ class Catalog:
     def __init__(self, report: Report | None = None, library: Path = LIBRARY) -> None:
         self.report = Report() if report is None else report
         self._library = library
-        self._own: dict[tuple[str, str], ast.Definition] = {}
+        self._own: dict[tuple[str, str], ast.Definition | ast.FileDefinition] = {}
+        self._folder = Path()
         self._index: dict[str, dict[str, Source]] = {}
         self._unread: set[tuple[str, str]] = set()
         self._read: dict[tuple[str, str], DefinitionBase | None] = {}
@@ -41,6 +43,7 @@ class Catalog:
     def for_script(cls, script: ast.Script, report: Report) -> Catalog:
         """The catalog a script sees. Its own definitions are all read, so that all their mistakes show."""
         catalog = cls(report)
+        catalog._folder = Path(script.source.name).parent
         for each in (script, *used_scripts(script, report)):
             catalog._add(each)
         for kind, name in catalog._own:
@@ -54,7 +57,7 @@ class Catalog:
 
     def names(self, kind: str) -> tuple[str, ...]:
         """All names of a kind: own ones first, then the library's, each in order of the alphabet."""
-        own = sorted({name for k, name in (*self._own, *self._unread) if k == kind})
+        own = sorted({name for k, name in (*self._own, *self._unread) if k == kind and "/" not in name})
         return (*own, *(name for name in sorted(self._scan(kind)) if name not in own))
 
     def get(self, kind: str, name: str) -> DefinitionBase | None:
@@ -64,7 +67,7 @@ class Catalog:
             self._read[key] = None  # a definition that needs itself finds nothing
             definition = self._definition(kind, name)
             if definition is not None:
-                self._read[key] = _reader(kind)(definition, self.report)
+                self._read[key] = self._reading(definition)
         return self._read[key]
 
     def source_of(self, kind: str, name: str) -> Source | None:
@@ -73,21 +76,24 @@ class Catalog:
             return self._own[kind, name].span.source
         return self._scan(kind).get(name)
 
+    def files(self) -> Iterator[FileDef]:
+        """The script's definitions out of other programs' files."""
+        for kind, name in self._own:
+            definition = self.get(kind, name)
+            if isinstance(definition, FileDef):
+                yield definition
+
     # -- finding ---------------------------------------------------------------------
 
     def _add(self, script: ast.Script) -> None:
         """Take the definitions of a script; a name that is taken already in the same file is an error."""
         self._unread.update((b.keyword, b.name) for b in script.broken if b.keyword in KINDS and b.name)
         for statement in script.statements:
-            if isinstance(statement, ast.FileDefinition):
-                self._unread.add((statement.kind, statement.name.text))
-                self.report.error(
-                    "VDS017",
-                    statement.path.span,
-                    label="definitions from other programs' files are not read yet",
-                    help=f"write the {statement.kind} in text, or take one of the library's",
-                )
-            if not isinstance(statement, ast.Definition):
+            if isinstance(statement, ast.CharacterLine) and isinstance(statement.cast, ast.Text):
+                statement = character_cast(statement.cast)
+                if ("cast", statement.name.text) in self._own:
+                    continue
+            if not isinstance(statement, ast.Definition | ast.FileDefinition):
                 continue
             key = (statement.kind, statement.name.text)
             first = self._own.get(key)
@@ -113,7 +119,12 @@ class Catalog:
             self._index[kind] = found
         return self._index[kind]
 
-    def _definition(self, kind: str, name: str) -> ast.Definition | None:
+    def _reading(self, definition: ast.Definition | ast.FileDefinition) -> DefinitionBase | None:
+        if isinstance(definition, ast.FileDefinition):
+            return read_file(definition, self._folder, self.report)
+        return _reader(definition.kind)(definition, self.report)
+
+    def _definition(self, kind: str, name: str) -> ast.Definition | ast.FileDefinition | None:
         if (kind, name) in self._own:
             return self._own[kind, name]
         if (kind, name) in self._unread:  # it is there, and reported

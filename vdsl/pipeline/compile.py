@@ -29,6 +29,7 @@ from ..propose.state import SceneState, opening_state
 from ..propose.story import advance, propose
 from ..propose.types import CameraProposal, ProposalGrid, StoryProposal
 from ..stage.assemble import StagedScene
+from ..stage.models import check_models
 from .filming import Camerawork
 from .judging import DiscriminatorJudge, GeometryJudge, Judge
 from .options import Options
@@ -121,6 +122,9 @@ def stage_acts(
     hand: one that has built sets and bodies before; played: told of every line, with the seconds it took
     """
     storyboard, report = checked.storyboard, checked.report
+    check_models(checked.catalog, report)
+    if report.has_errors:
+        raise ScriptError(report)
     hand = hand or Stagehand(checked.catalog)
     acts: list[Act] = []
     for number, scene in enumerate(storyboard.scenes):

@@ -6,7 +6,7 @@ Assumes what :meth:`PropDef.shape` guarantees. Nothing here knows where a prop w
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,7 +14,8 @@ from numpy.typing import NDArray
 from runtime import shapes
 from runtime.mesh import Mesh, join
 
-from ..lang.definitions.prop import Primitive, PropShape
+from ..lang.definitions.prop import Primitive, PropShape, PropSpot
+from .models import file_prop
 
 #: Boxes with no side longer than this are nothing to bump into.
 SMALLEST_SOLID = 0.08
@@ -36,11 +37,13 @@ class BuiltProp:
 
     mesh: ``parts`` count from 0, one for each primitive that is set off by a line
     centre, half: float64 [B, 3], its solid boxes, aligned with its axes
+    spots: those that follow from what it measures
     """
 
     mesh: Mesh
     centre: NDArray[np.float64]
     half: NDArray[np.float64]
+    spots: tuple[PropSpot, ...] = ()
 
 
 def build_prop(shape: PropShape) -> BuiltProp:
@@ -54,6 +57,12 @@ def build_prop(shape: PropShape) -> BuiltProp:
         meshes.append(with_part(mesh, part))
         if primitive.solid and len(mesh.vertices):
             bounds.append((mesh.vertices.min(0).astype(np.float64), mesh.vertices.max(0).astype(np.float64)))
+    spots: tuple[PropSpot, ...] = ()
+    if shape.model is not None:
+        model = file_prop(shape.model)
+        meshes.append(replace(model.mesh, parts=model.mesh.parts + np.int32(part + 1)))
+        bounds.extend(model.boxes)
+        spots = () if any(s.name == "stand" for s in shape.spots) else (before(model.mesh),)
     if shape.solids is not None:
         centre = np.array([(b.at[0], b.at[1], b.at[2] + b.size[2] / 2) for b in shape.solids]).reshape(-1, 3)
         half = np.array([b.size for b in shape.solids]).reshape(-1, 3) / 2
@@ -61,7 +70,13 @@ def build_prop(shape: PropShape) -> BuiltProp:
         boxes = merged_boxes(bounds)
         centre = np.array([(a + b) / 2 for a, b in boxes]).reshape(-1, 3)
         half = np.array([(b - a) / 2 for a, b in boxes]).reshape(-1, 3)
-    return BuiltProp(join(meshes), centre, half)
+    return BuiltProp(join(meshes), centre, half, spots)
+
+
+def before(mesh: Mesh) -> PropSpot:
+    """Where one stands to use a thing: before the middle of its front."""
+    low, high = mesh.vertices.min(0).astype(float), mesh.vertices.max(0).astype(float)
+    return PropSpot("stand", ((low[0] + high[0]) / 2, low[1] - 0.4, 0.0), math.pi / 2)
 
 
 def with_part(mesh: Mesh, part: int) -> Mesh:

@@ -381,7 +381,7 @@ class _Builder:
         mesh = self._numbered(built.mesh)
         placed = mesh.transformed(matrix)
         low, high = _bounds(placed, matrix)
-        named = [_spot(s, matrix) for s in (*extra, *shape.spots)]
+        named = [_spot(s, matrix) for s in (*extra, *shape.spots, *built.spots)]
         if grip is not None:
             x, y, z = (matrix @ np.array([*grip, 1.0]))[:3].tolist()
             named.append(Spot("grip", (x, y, z)))

@@ -6,7 +6,7 @@ that kind's builder in ``vdsl.stage`` needs.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from ..source import Span
 
@@ -32,6 +32,26 @@ class DefinitionBase:
     name: str
     parameters: tuple[ParameterSpec, ...]
     span: Span
+
+
+@dataclass(frozen=True)
+class ModelFile:
+    """Another program's file, and how what is in it is brought into the film.
+
+    path, folder: absolute, the file and the project's folder; span: where the script names it
+    up: ``y``, ``z`` or "" as its format has it; turn: radians about Z
+    scale: metres for one of its units; height, length (along Y), width (along X): what it has to measure
+    """
+
+    path: str
+    folder: str
+    span: Span = field(compare=False, repr=False)
+    up: str = ""
+    turn: float = 0.0
+    scale: float | None = None
+    height: float | None = None
+    length: float | None = None
+    width: float | None = None
 
 
 @dataclass(frozen=True)

@@ -1,0 +1,124 @@
+"""OBJ, PLY and STL through trimesh, with what they name beside them kept inside the project's folder."""
+
+from __future__ import annotations
+
+import io
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import trimesh
+from numpy.typing import NDArray
+from trimesh.resolvers import Resolver
+
+from . import limits
+from .errors import ModelFileError
+from .gltf_file import words
+from .model import Model, Piece
+from .outline import outline
+from .paths import beside, read_bytes
+from .textures import decode, on_faces, srgb
+
+_GREY = (0.72, 0.71, 0.69)
+
+
+class _Beside(Resolver):
+    """Gives trimesh the files a model names, if they may be read; textures are looked at first."""
+
+    def __init__(self, path: Path, folder: Path) -> None:
+        self.path, self.folder = path, folder
+        self.read = 0
+
+    def get(self, name: str) -> bytes:
+        found = beside(self.path, str(name).strip(), self.folder)
+        self.read += 1
+        if self.read > limits.IMAGES:
+            raise ModelFileError(self.path, f"it names more than {limits.IMAGES} other files")
+        if not found.is_file():
+            raise FileNotFoundError(name)  # trimesh goes on without
+        data = read_bytes(found)
+        if found.suffix.lower() not in (".mtl", ""):
+            decode(found, data)
+        return data
+
+    def keys(self) -> list[str]:
+        return []
+
+    def write(self, name: str, data: bytes) -> None:
+        raise ModelFileError(self.path, "nothing is written")
+
+    def namespaced(self, namespace: str) -> _Beside:
+        return self
+
+
+def read_mesh(path: Path, folder: Path) -> Model:
+    """An .obj, .ply or .stl: its objects by name, with their materials' colours."""
+    about = outline(path, folder)
+    kind = path.suffix.lower()[1:]
+    options: dict[str, Any] = {"process": False, "maintain_order": True}
+    if kind == "obj":
+        options |= {"resolver": _Beside(path, folder), "split_objects": True, "group_material": True}
+    try:
+        with np.errstate(all="ignore"):
+            loaded = trimesh.load_scene(io.BytesIO(read_bytes(path)), file_type=kind, **options)
+            pieces = [
+                _piece(path, _owner(name, about.nodes), mesh)
+                for name, mesh in loaded.geometry.items()
+                if isinstance(mesh, trimesh.Trimesh) and len(mesh.faces)
+            ]
+    except ModelFileError:
+        raise
+    except MemoryError:
+        raise ModelFileError(path, "there is not enough memory for it") from None
+    except Exception as error:  # its readers raise whatever a broken file leads to
+        raise ModelFileError(path, f"it does not read: {_said(error)}") from None
+    if not pieces:
+        raise ModelFileError(path, "it has no triangles")
+    if sum(len(p.faces) for p in pieces) > limits.TRIANGLES:
+        raise ModelFileError(path, f"it has more than {limits.TRIANGLES:,} triangles")
+    return Model(path, tuple(pieces), about.y_up)
+
+
+def _owner(name: str, objects: tuple[str, ...]) -> str:
+    """The object of the file a geometry belongs to: trimesh adds the material to the name."""
+    (word,) = words([name])
+    return max((o for o in objects if word.startswith(o)), key=len, default=word)
+
+
+def _said(error: Exception) -> str:
+    words = " ".join(str(error).split())
+    return words[:100] if words else type(error).__name__
+
+
+def _piece(path: Path, name: str, mesh: trimesh.Trimesh) -> Piece:
+    vertices = np.asarray(mesh.vertices, np.float64).reshape(-1, 3)
+    faces = np.asarray(mesh.faces, np.int64).reshape(-1, 3)
+    if faces.min() < 0 or faces.max() >= len(vertices):
+        raise ModelFileError(path, "a triangle of it has corners that are not there")
+    if not np.isfinite(vertices[faces.ravel()]).all():
+        raise ModelFileError(path, "some of its points are no numbers (NaN or infinite)")
+    off = np.zeros(len(faces), bool)
+    return Piece(name, np.nan_to_num(vertices), faces.astype(np.int32), _colors(mesh, faces), off, off)
+
+
+def _colors(mesh: trimesh.Trimesh, faces: NDArray[np.int64]) -> NDArray[np.float32]:
+    """sRGB [F, 3] of faces: texture times colour, colours of faces or points, or grey."""
+    plain = np.tile(np.array(_GREY), (len(faces), 1))
+    visual = mesh.visual
+    if visual.kind == "texture":
+        material = visual.material
+        image = getattr(material, "image", None) or getattr(material, "baseColorTexture", None)
+        main = np.asarray(material.main_color, np.float64).reshape(-1)[:3] / 255.0
+        uv = None if visual.uv is None else np.asarray(visual.uv, np.float64)
+        if image is None or uv is None or len(uv) < len(mesh.vertices):
+            plain[:] = main
+        else:
+            small = image.convert("RGBA")
+            small.thumbnail((1024, 1024))
+            flipped = np.stack([uv[:, 0], 1.0 - uv[:, 1]], 1)
+            plain = srgb(on_faces(np.asarray(small, np.uint8), flipped, faces)[:, :3])
+    elif visual.kind == "face":
+        plain = np.asarray(visual.face_colors, np.float64)[:, :3] / 255.0
+    elif visual.kind == "vertex":
+        plain = np.asarray(visual.vertex_colors, np.float64)[faces][:, :, :3].mean(1) / 255.0
+    return np.clip(plain, 0.0, 1.0).astype(np.float32)

@@ -37,7 +37,7 @@ from .weights import (
 )
 
 #: Raised with every change of shape, so that old cache files are not read.
-VERSION = 5
+VERSION = 6
 
 
 @dataclass(frozen=True, eq=False)

@@ -69,7 +69,7 @@ def _skin(head: Head) -> list[Piece]:
     opening = head.field(eye_opening(head))
     lash = head.field(_lash_outline(head))
     piece = Piece(clip(patch, opening, keep_outside=True), f.spec.skin, "skin", solid, rule="face")
-    piece = hemmed(piece, 0.007 * u)
+    piece = hemmed(piece, 0.034 * u)
     skin, rim = parted(piece, lash, _LASH, "skin")
     *rest, _slit = parted_all(skin, [head.field(cut) for cut in mouth(head)], _MOUTH, "skin")
     outline = [head.field(cut) for cut in lips(head)]

@@ -196,14 +196,15 @@ def jaw_share(head: Head, p: Points) -> Values:
 def corner_share(head: Head, p: Points) -> Values:
     """How far the skin follows the left corner of the mouth, 0..1."""
     d = p - np.array([0.30, head.mouth_half * 0.95, head.mouth_z + 0.012])
-    size = np.where(d[:, 2:] > 0, np.array([[0.12, 0.058, 0.085]]), np.array([[0.12, 0.058, 0.060]]))
-    return 0.90 * np.exp(-((d / size) ** 2).sum(1))
+    across = np.where((d[:, 2] < -0.012) & (d[:, 1] < 0), 0.036, 0.058)
+    high = np.where(d[:, 2] > 0, 0.085, 0.060)
+    return 0.90 * np.exp(-((d[:, 0] / 0.12) ** 2) - (d[:, 1] / across) ** 2 - (d[:, 2] / high) ** 2)
 
 
 def lip_share(head: Head, p: Points) -> Values:
     """How far the skin follows the upper lip, 0..1; the jaw's share is not taken off."""
     m, half = head.mouth_z, head.mouth_half
-    across = np.clip(1.0 - (np.abs(p[:, 1]) / (1.05 * half)) ** 2, 0.0, 1.0)
+    across = np.clip(1.0 - (np.abs(p[:, 1]) / (1.1 * half)) ** 4, 0.0, 1.0)
     up = np.clip(1.0 - (p[:, 2] - m - 0.02) / 0.085, 0.0, 1.0)
     return across * up * up * (3 - 2 * up) * np.clip((p[:, 0] - 0.20) / 0.10, 0.0, 1.0)
 
@@ -220,7 +221,7 @@ def lid_shares(head: Head, p: Points) -> tuple[Values, Values]:
 
 
 def brow_share(head: Head, p: Points) -> tuple[Values, Values]:
-    """Along the left brow: how near its inner end a point is (1 inner, 0 outer), and how far skin follows it."""
+    """Along the left brow: how near its inner end a point is, 1 to 0, and how far skin follows it."""
     _, ey, ez = head.eye
     t = (p[:, 1] - ey + 0.098) / 0.190
     inner = np.clip(1.0 - 1.35 * t, 0.0, 1.0)

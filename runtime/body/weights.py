@@ -56,8 +56,8 @@ def face_weights(figure: Figure, points: Points) -> NDArray[np.float64]:
     left = folded[:, 1] >= 0
     folded[:, 1] = np.abs(folded[:, 1])
     skull = w[:, _COLUMN["head"]].copy()
-    jaw = jaw_share(head, folded)
-    corner = corner_share(head, folded) * (1 - jaw)
+    corner = corner_share(head, folded)
+    jaw = jaw_share(head, folded) * (1 - corner)
     lip = lip_share(head, folded) * (1 - jaw) * (1 - corner)
     upper, lower = lid_shares(head, folded)
     inner, brow = brow_share(head, folded)

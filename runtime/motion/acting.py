@@ -12,8 +12,9 @@ from numpy.typing import NDArray
 
 from runtime.body.skeleton import JOINT
 
+from .carriage import Low, Style
 from .channels import Channels
-from .contacts import Contacts, HandTracks
+from .contacts import Contacts, HandTracks, Layer
 from .curves import below, delayed, plateau, ramp, smooth, wander
 from .face import GazePull, Look, blinks, felt, look, mimic, speech
 from .feet import ankle_positions
@@ -34,12 +35,12 @@ class Performer:
         self.skeleton = plan.actor.skeleton
         self.frames = len(t)
         self.height = self.skeleton.height
-        self.root, self.yaw = plan.route.root(t)
+        self.root, self.yaw, self.ground = plan.route.root(t)
         self.sitting = plan.route.sitting(t)
-        self.floor = plan.route.floor
-        first = plan.actor.state.seat
-        self.seat_height = plan.route.seat_height(t, first) - self.floor
+        self.seat_height = plan.route.seat_height(t) - self.ground
         self.feet = plan.route.feet(t)
+        self.low = Low(plan.route, t, self.yaw)
+        self.style = Style(plan.route, plan.manner, self.feet, t, fps, rng)
         self.channels = Channels(self.frames)
         for window in plan.windows:
             self.channels.perform(window.timeline, window.start, window.duration, t, fps, window.hands)
@@ -54,8 +55,15 @@ class Performer:
         bind = self.skeleton.bind
         eye = bind[JOINT["eye_l"]][2]
         seated = self.seat_height + sit_clearance(self.skeleton) + eye - bind[JOINT["thigh_l"]][2]
-        z = self.floor + eye + self.sitting * (seated - eye)
-        return np.concatenate([self.root, z[:, None]], axis=1)
+        z = self.ground + eye + self.sitting * (seated - eye)
+        if not self.low.any:
+            return np.concatenate([self.root, z[:, None]], axis=1)
+        up = eye - bind[JOINT["thigh_l"]][2]  # of the hip joints, along the trunk
+        share, tilt = self.low.share, self.low.tilt
+        z = z * (1 - share) + self.low.hip + share * up * np.cos(tilt)
+        ahead = share * up * np.sin(tilt)
+        xy = self.root + ahead[:, None] * np.stack([np.cos(self.yaw), np.sin(self.yaw)], axis=1)
+        return np.concatenate([xy, z[:, None]], axis=1)
 
     # -- layers ------------------------------------------------------------------------------
 
@@ -72,19 +80,20 @@ class Performer:
         self.run = smooth(self.feet.run.max(axis=0) * np.clip(self.pace / 1.5, 0, 1), 0.12 * self.fps)
         offset = self.feet.place[..., :2] - self.root
         along = np.einsum("ktc,tc->kt", offset, ahead)
-        moved = (1.0 - self.still) * (1.0 - self.sitting)
+        moved = (1.0 - self.still) * (1.0 - self.sitting) * (1.0 - self.low.share)
         self.lead = smooth((along[0] - along[1]) * moved, 0.05 * self.fps)  # left foot ahead of the right
 
     def _idle(self) -> None:
         t, rng = self.t, self.rng
-        calm = self.still
+        calm = self.still * (1 - self.low.share)
+        restless = self.plan.manner.restless
         breath = np.sin(2 * np.pi * t / rng.uniform(3.2, 4.4) + rng.uniform(0, 6.3))
         self.feeling = felt(self.plan.feelings, t, rng)
         self.breath = breath * self.feeling["breath"]
-        self.sway = 0.026 * wander(t, rng, 6.5) * calm * (1 - 0.8 * self.sitting)
-        self.twirl = 0.035 * wander(t, rng, 7.5) * calm
+        self.sway = 0.026 * restless * wander(t, rng, 6.5) * calm * (1 - 0.8 * self.sitting)
+        self.twirl = 0.035 * restless * wander(t, rng, 7.5) * calm
         self.nodding = 0.02 * wander(t, rng, 4.0)
-        self.turning = 0.045 * wander(t, rng, 5.0) * calm
+        self.turning = 0.045 * restless * wander(t, rng, 5.0) * calm
         self.tilting = 0.03 * wander(t, rng, 6.0)
         self.rest = np.array([0.25, 0.25])[:, None] + 0.06 * rng.standard_normal((2, 1))
         self.arm_noise = np.stack([0.02 * wander(t, rng, 4.5), 0.02 * wander(t, rng, 5.5)])
@@ -100,47 +109,58 @@ class Performer:
 
     def torso(self, lean: Array, twist: Array, drop: Array, forward: Array) -> None:
         """Poses hips to clavicles and the head; the arguments [T] are what reaching asks on top."""
-        c, fig, bind = self.channels, self.figure, self.skeleton.bind
+        c, fig, bind, low, style = self.channels, self.figure, self.skeleton.bind, self.low, self.style
         ankle, toes = self._ankles()
+        upright = 1 - np.clip(low.share, 0.0, 1.0)
         stride = np.clip(self.lead / (0.42 * self.height), -1.5, 1.5)
         support = smooth(self.feet.air[1] - self.feet.air[0], 0.05 * self.fps) * (1 - self.sitting)
+        support = support * upright
+        raised = np.clip(c.pair("foot", "lift") / 0.12, 0.0, 1.0) * (1 - self.sitting) * upright
         shift = self.sway + c["hips.shift"] + 0.018 * support * (1 - 0.5 * self.run)
+        shift = shift + 0.045 * self.height * (raised[1] - raised[0])  # over the foot one stands on
         pelvis_turn = -0.13 * stride * (1 - 0.3 * self.run) + c["hips.turn"] + 0.3 * self.twirl
-        roll = 0.06 * support + 1.1 * self.sway
+        roll = 0.06 * support + 1.1 * self.sway + style.roll
         moving = np.clip(self.pace / 1.2, 0, 1)
         bow = c["body.bow"] + 0.13 * self.run + 0.03 * moving
         transition = self._sit_lean()
-        pitch = 0.45 * lean + bow + 0.5 * transition - 0.05 * self.sitting
+        pitch = 0.45 * lean + bow + 0.5 * transition - 0.05 * self.sitting + 0.4 * style.lean * upright
         accelerate = np.clip(0.03 * self.push, -0.08, 0.12)
         spine_lean = (
             0.55 * lean + c["body.lean"] + 0.5 * transition + accelerate + 0.05 * self.run
-            + 0.012 * self.breath + 0.03 * self.sitting + self.feeling["lean"]
+            + 0.012 * self.breath + 0.03 * self.sitting + self.feeling["lean"] + 0.6 * style.lean * upright
         )  # fmt: skip
         self.bent = smooth(np.clip(pitch + spine_lean - 0.08, 0.0, 1.2), 0.06 * self.fps)
+        bowed = 0.75 * (pitch + spine_lean)
         spine_twist = (
             1.9 * 0.13 * stride + c["body.twist"] + self.look.chest_twist + twist + 0.6 * self.twirl
             - 0.8 * c["hips.turn"]
         )  # fmt: skip
-        spine_side = c["body.side"] + 0.9 * roll
+        spine_side = c["body.side"] + 0.9 * roll + style.side * upright
         across = np.stack([-np.sin(self.yaw), np.cos(self.yaw)], axis=1)
         ahead = np.stack([np.cos(self.yaw), np.sin(self.yaw)], axis=1)
         back = 0.24 * np.sin(np.clip(pitch, 0, 1.2)) * (1 - self.sitting)
         xy = self.root + shift[:, None] * across + (c["hips.forward"] + forward - 0.3 * back)[:, None] * ahead
         z = self._pelvis_height(xy, ankle, drop + c["hips.drop"])
+        pitch, spine_lean = pitch + low.pitch, spine_lean + low.lean
         root = np.concatenate([xy, z[:, None]], axis=1)
-        up = c.pair("shoulder", "up") + 0.018 * self.breath + self._raise() + self.feeling["shoulders"]
+        up = (
+            c.pair("shoulder", "up")
+            + 0.018 * self.breath
+            + self._raise()
+            + self.feeling["shoulders"]
+            + style.up
+        )
         fig.torso(
             root, self.yaw, (pelvis_turn, pitch, roll), (spine_twist, spine_lean, spine_side),
-            (up, c.pair("shoulder", "forward") + self.feeling["rounded"]),
+            (up, c.pair("shoulder", "forward") + self.feeling["rounded"] + style.forward),
         )  # fmt: skip
-        upright = 0.75 * (pitch + spine_lean)
         talk = self.speech
         fig.head(
             self.look.head_turn - 0.5 * (spine_twist - self.look.chest_twist - twist) + self.turning
-            + c["head.turn"] - 0.8 * pelvis_turn,
-            self.look.head_nod - np.clip(upright, -0.4, 0.55) + self.nodding + c["head.nod"] + talk.nod
-            + self.feeling["nod"],
-            self.tilting + c["head.tilt"] + talk.tilt - 0.5 * spine_side + self.feeling["tilt"],
+            + c["head.turn"] - 0.8 * pelvis_turn + style.loll[0],
+            self.look.head_nod - np.clip(bowed, -0.4, 0.55) + self.nodding + c["head.nod"] + talk.nod
+            + self.feeling["nod"] + style.nod + low.nod,
+            self.tilting + c["head.tilt"] + talk.tilt - 0.5 * spine_side + self.feeling["tilt"] + style.loll[1],
         )  # fmt: skip
         self._set_legs(ankle, toes, bind)
 
@@ -161,7 +181,7 @@ class Performer:
 
     def _ankles(self) -> tuple[Array, Array]:
         c = self.channels
-        ankle, toes = ankle_positions(self.skeleton, self.feet, self.floor)
+        ankle, toes = ankle_positions(self.skeleton, self.feet)
         ahead, out, lift = (c.pair("foot", axis) for axis in ("forward", "out", "lift"))
         cos, sin = np.cos(self.yaw), np.sin(self.yaw)
         out = MIRROR * out
@@ -182,14 +202,15 @@ class Performer:
         hip_z = bind[JOINT["thigh_l"]][2]
         leg = hip_z - bind[JOINT["foot_l"]][2]
         above = bind[0][2] - hip_z
-        stand = self.floor + hip_z - 0.0025 * self.height
+        stand = self.ground + hip_z - 0.0025 * self.height
         cadence = self.feet.air.sum(axis=0)
         moving = np.clip(np.abs(self.pace) / 1.0, 0, 1)
+        stairs = self._stairs()
         walk_bob = moving * (1 - self.run) * (0.016 * (cadence - 0.5) - 0.012)
         run_bob = (
             self.run * self.height * (0.028 * smooth(self.feet.air.min(axis=0) * 2.2, 0.04 * self.fps) - 0.04)
         )
-        wished = stand + walk_bob + run_bob - drop
+        wished = stand + walk_bob + run_bob - drop - self.style.drop + self.style.rise - stairs
         across = np.stack([-np.sin(self.yaw), np.cos(self.yaw)], axis=1)
         half = bind[JOINT["thigh_l"]][1]
         hips = np.stack([xy + half * across, xy - half * across])
@@ -200,9 +221,17 @@ class Performer:
         free = 1 - np.clip(3 * self.sitting, 0, 1)
         wished = np.minimum(wished, np.where(free > 0, lowest, wished)) * free + wished * (1 - free)
         standing = below(wished, max(1, round(0.07 * self.fps)))
-        seated = self.floor + self.seat_height + sit_clearance(self.skeleton)
-        s = self.sitting
-        return np.asarray(standing + s * (seated - standing) + above)
+        seated = self.ground + self.seat_height + sit_clearance(self.skeleton)
+        s, low = self.sitting, self.low
+        height = standing + s * (seated - standing)
+        if low.any:
+            height = height * (1 - low.share) + low.hip - low.share * drop
+        return np.asarray(height + above)
+
+    def _stairs(self) -> Array:
+        """How much lower the hips go where one foot stands higher than the other [T]: knees have to bend."""
+        apart = np.abs(self.feet.ground[0] - self.feet.ground[1])
+        return smooth(0.25 * apart, 0.12 * self.fps) if apart.any() else apart
 
     def _set_legs(self, ankle: Array, toes: Array, bind: Array) -> None:
         yaw = unwrapped(self.feet.place[..., 2])
@@ -214,7 +243,8 @@ class Performer:
         pull = ankle - hips
         far = np.linalg.norm(pull, axis=-1, keepdims=True)
         ankle = hips + pull * np.minimum(1.0, 0.9995 * leg / np.maximum(far, 1e-6))
-        self.figure.legs(ankle, yaw, pitch, toes, np.broadcast_to(spread, yaw.shape))
+        low = (self.low.share, self.low.poles) if self.low.any else None
+        self.figure.legs(ankle, yaw, pitch, toes, np.broadcast_to(spread, yaw.shape), low)
 
     # -- arms -----------------------------------------------------------------------------
 
@@ -226,7 +256,7 @@ class Performer:
     def arm_pose(self, carry: Array) -> ArmPose:
         """Both arms by angles: hanging, swinging with the gait, carrying (``carry`` [2, T]), then keys."""
         c = self.channels
-        stride = np.clip(self.lead / (0.42 * self.height), -1.6, 1.6)
+        stride = np.clip(self.lead / (0.42 * self.height), -1.6, 1.6) * self.style.arms
         opposite = np.stack([-stride, stride])
         lag = delayed(opposite.T, 0.06 * self.fps).T
         run = self.run
@@ -238,9 +268,12 @@ class Performer:
             - 0.15 * run
             + 0.18 * sit
             + 0.85 * self.bent
+            + self.low.swing
+            + self.style.fling
         )
         out = 0.17 + 0.05 * run + 0.5 * self.arm_noise[::-1] + 0.05 * sit + 0.02 * self.breath
         bend = self.rest + 0.20 * np.maximum(lag, -0.4) * (1 - run) + run * (1.45 + 0.25 * lag) + 0.75 * sit
+        bend = bend + self.style.bend
         twist = 0.14 + 0.2 * run + 0.2 * sit + 0.0 * swing
         hang: dict[str, Array] = {
             "swing": swing + c.pair("arm", "swing+"), "out": out, "bend": bend, "twist": twist,
@@ -259,15 +292,34 @@ class Performer:
         values["bend"] = np.clip(values["bend"], 0.03, 2.5)
         return ArmPose(**values)
 
+    def resting(self, posed: Array, carry: Array) -> list[Layer]:
+        """Where hands are in a low posture, where keys (``posed`` [2, T]) do not say and nothing is in them:
+        planted on the floor, or on the knees."""
+        if not self.low.any:
+            return []
+        free = (1 - posed) * (1 - carry)
+        layers = []
+        if self.low.knees.any():
+            layers += [
+                Layer(k, self.low.knees * free[k], "knee", np.zeros(3), (0.3, -0.5, 1.2)) for k in (0, 1)
+            ]
+        if self.low.palms.any():
+            palms = self.plan.route.palms(self.t)
+            for k in (0, 1):
+                up = self.low.palms_up + palms.lift[k]
+                place = np.concatenate([palms.place[k, :, :2], up[:, None]], axis=1)
+                layers.append(Layer(k, self.low.palms * free[k], place, np.zeros(3), (0.0, 0.0, 1.5)))
+        return layers
+
     def reach_body(self, tracks: HandTracks) -> None:
         """Poses the torso so that hands can get where they are to go: leans, crouches, then twists."""
         lean, twist, drop, forward = (np.zeros(self.frames) for _ in range(4))
         self.torso(lean, twist, drop, forward)
         if not tracks.reaching:
             return
-        low = tracks.position(self.figure)[..., 2] - self.floor
-        crouch = np.clip((0.40 - low / self.height) / 0.2, 0.0, 0.85) * tracks.weight
-        crouch = smooth(crouch.max(axis=0), 0.1 * self.fps) * (1 - self.sitting)
+        down_to = tracks.position(self.figure)[..., 2] - self.ground
+        crouch = np.clip((0.40 - down_to / self.height) / 0.2, 0.0, 0.85) * tracks.weight
+        crouch = smooth(crouch.max(axis=0), 0.1 * self.fps) * (1 - self.sitting) * (1 - self.low.share)
         for _ in range(3):
             gap = self._shortage(tracks)
             if gap.max() < 1e-3:
@@ -325,7 +377,7 @@ class Performer:
         self.figure.face(
             (self.look.eye_turn + c["eyes.turn"], self.look.eye_down + c["eyes.down"]),
             np.clip(lids, 0, 1), (up, knit), smile,
-            np.clip(talk.jaw * (1.0 - 0.5 * feeling["jaw"]) + c["jaw.open"] + feeling["jaw"], 0, 1),
+            np.clip(talk.jaw * (1.0 - 0.5 * feeling["jaw"]) + c["jaw.open"] + feeling["jaw"], -0.2, 1),
             mimic(feeling, c["mouth.smile"], talk.jaw),
         )  # fmt: skip
 

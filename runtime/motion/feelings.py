@@ -16,7 +16,7 @@ class Expression:
     brow: whole brows up (-1 .. 1); inner: their inner ends up, on top of that; knit: drawn together 0..1
     lid: upper lids, share of closing (negative: torn open); squint: lower lids up 0..1 (negative: down)
     smile: corners of the mouth up (-1 .. 1); wide: apart (negative: pursed); sneer: upper lip up 0..1
-    jaw: open 0..1, on top of talking
+    jaw: open 0..1, on top of talking (negative: pressed shut)
     nod: chin down, tilt: head to the left, lean: body forward, shoulders up and forward, all radians
     breath: how fast and deep one breathes against calm
     """
@@ -45,7 +45,7 @@ FEELINGS: dict[str, Expression] = {
         nod=-0.05, tilt=0.05, lean=-0.03, shoulders=0.03, rounded=-0.06, breath=1.1,
     ),
     "sad": Expression(
-        brow=-0.15, inner=1.0, knit=0.5, lid=0.34, smile=-0.85, wide=-0.2,
+        brow=-0.15, inner=1.0, knit=0.5, lid=0.34, smile=-1.0, wide=0.05, jaw=-0.10,
         nod=0.20, tilt=0.08, lean=0.09, shoulders=-0.04, rounded=0.20, breath=0.85,
     ),
     "angry": Expression(
@@ -61,7 +61,7 @@ FEELINGS: dict[str, Expression] = {
         nod=-0.08, lean=-0.06, shoulders=0.06, breath=1.2,
     ),
     "disgusted": Expression(
-        brow=-0.35, inner=-0.25, knit=0.55, lid=0.22, squint=0.7, smile=-0.55, wide=0.1, sneer=1.0, jaw=0.04,
-        nod=-0.06, tilt=-0.10, lean=-0.07, shoulders=0.05, rounded=0.04,
+        brow=-0.35, inner=-0.25, knit=0.55, lid=0.22, squint=0.7, smile=-0.65, wide=0.15, sneer=0.75,
+        jaw=-0.15, nod=-0.06, tilt=-0.10, lean=-0.07, shoulders=0.05, rounded=0.04,
     ),
 }  # fmt: skip

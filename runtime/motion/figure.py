@@ -176,9 +176,18 @@ class Figure:
         """[2, T, 3]"""
         return np.stack([self._place(f"thigh_{s}") for s in SIDES])
 
-    def legs(self, ankle: Array, yaw: Array, pitch: Array, toes: Array, spread: Array) -> None:
+    def legs(
+        self,
+        ankle: Array,
+        yaw: Array,
+        pitch: Array,
+        toes: Array,
+        spread: Array,
+        low: tuple[Array, Array] | None = None,
+    ) -> None:
         """Ankles at ``ankle`` [2, T, 3]; feet turned by yaw and pitch (heel up) [2, T]; toes flex up [2, T];
-        knees bulge along the feet, ``spread`` [2, T] more to the outside."""
+        knees bulge along the feet, ``spread`` [2, T] more to the outside; with ``low``, a share [T] and
+        directions weighted by it [2, T, 3], they point there instead."""
         bind = self.skeleton.bind
         root = self.hip_joints()
         thigh = float(np.linalg.norm(bind[JOINT["shin_l"]] - bind[JOINT["thigh_l"]]))
@@ -186,6 +195,8 @@ class Figure:
         knee_yaw = yaw + MIRROR * spread
         pole = np.stack([np.cos(knee_yaw), np.sin(knee_yaw), np.zeros_like(yaw)], axis=-1)
         pole[..., 2] += 0.25
+        if low is not None:
+            pole = pole * (1.0 - low[0])[:, None] + low[1]
         limb = two_bone(root, ankle, thigh, shin, pole, soft=False)
         self._set(_THIGHS, root, bone_rotation(limb.middle - root, limb.hinge, self._thigh_frames))
         self._set(_SHINS, limb.middle, bone_rotation(limb.end - limb.middle, limb.hinge, self._shin_frames))
@@ -258,7 +269,7 @@ class Figure:
         mimic: Mimic | None = None,
     ) -> None:
         """eyes: turn, down [T]; lids [T]: 0 open .. 1 shut; brows: up [2, T] and knit [T]; mouth [T]: smile
-        -1..1; jaw [T]: open 0..1; mimic: what a feeling adds"""
+        -1..1; jaw [T]: open 0..1, a little below 0 pressed shut; mimic: what a feeling adds"""
         turn, down = eyes
         still = np.zeros(self.frames)
         m = Mimic(*([still] * 5)) if mimic is None else mimic
@@ -266,7 +277,13 @@ class Figure:
         about_z, about_y = [still, still], [0.30 * jaw, -0.20 * m.sneer]
         for side, up in zip((1.0, -1.0), brows[0], strict=True):
             about_z += [turn, still, still, -side * 0.06 * knit, side * 0.16 * m.wide]
-            about_y += [down, 0.95 * shut + m.lid, -0.42 * m.squint, -0.19 * up + 0.03 * knit, -0.20 * mouth]
+            about_y += [
+                down,
+                0.95 * shut + m.lid,
+                -0.42 * m.squint,
+                -0.19 * up + 0.03 * knit,
+                0.12 * jaw - 0.20 * mouth,
+            ]
         self._turn_all(_FACE, np.swapaxes(rot_zy(np.stack(about_z), np.stack(about_y)), 0, 1))
         about_z, about_y = [-side * 0.05 * knit for side in (1.0, -1.0)], [-0.15 * m.inner] * 2
         self._turn_all(_BROWS, np.swapaxes(rot_zy(np.stack(about_z), np.stack(about_y)), 0, 1))

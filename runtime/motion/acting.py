@@ -160,7 +160,8 @@ class Performer:
             + c["head.turn"] - 0.8 * pelvis_turn + style.loll[0],
             self.look.head_nod - np.clip(bowed, -0.4, 0.55) + self.nodding + c["head.nod"] + talk.nod
             + self.feeling["nod"] + style.nod + low.nod,
-            self.tilting + c["head.tilt"] + talk.tilt - 0.5 * spine_side + self.feeling["tilt"] + style.loll[1],
+            self.tilting + c["head.tilt"] + talk.tilt - 0.5 * spine_side + self.feeling["tilt"]
+            + style.loll[1],
         )  # fmt: skip
         self._set_legs(ankle, toes, bind)
 

@@ -67,20 +67,20 @@ MANNERS: dict[str, Manner] = {
         arms=0.5, bend=0.5, restless=2.2, loose=0.07,
     ),
     "stealthily": Manner(
-        tempo=0.75, amplitude=0.8, stride=0.85, cadence=1.4, lean=0.3, nod=-0.16, up=0.05, forward=0.12, arms=0.4,
-        bend=0.7, lift=0.09, crouch=0.1, toes=0.35, restless=0.5,
+        tempo=0.75, amplitude=0.8, stride=0.85, cadence=1.4, lean=0.3, nod=-0.16, up=0.05, forward=0.12,
+        arms=0.4, bend=0.7, lift=0.09, crouch=0.1, toes=0.35, restless=0.5,
     ),
     "angrily": Manner(
-        tempo=1.25, amplitude=1.2, stride=1.1, cadence=0.84, lean=0.13, nod=0.1, up=0.09, forward=0.08, arms=1.4,
-        bend=0.45,
+        tempo=1.25, amplitude=1.2, stride=1.1, cadence=0.84, lean=0.13, nod=0.1, up=0.09, forward=0.08,
+        arms=1.4, bend=0.45,
     ),
     "happily": Manner(
         tempo=1.1, amplitude=1.15, stride=1.03, cadence=0.92, lean=-0.04, nod=-0.07, up=0.02, forward=-0.08,
         arms=1.5, bounce=0.025, lift=0.02, sway=0.03,
     ),
     "tiredly": Manner(
-        tempo=0.72, amplitude=0.75, stride=0.74, cadence=1.3, lean=0.2, nod=0.24, up=-0.1, forward=0.16, arms=0.5,
-        crouch=0.03, lift=-0.015, sway=0.04, loose=0.06, width=1.2,
+        tempo=0.72, amplitude=0.75, stride=0.74, cadence=1.3, lean=0.2, nod=0.24, up=-0.1, forward=0.16,
+        arms=0.5, crouch=0.03, lift=-0.015, sway=0.04, loose=0.06, width=1.2,
     ),
 }  # fmt: skip
 

@@ -93,13 +93,15 @@ def _feel(plans: dict[str, Plan], tasks: dict[str, Task], feelings: dict[str, st
 
 
 def _floor_points(performer: Performer) -> Array:
-    floor = np.full((len(performer.t), 1), performer.floor)
+    floor = performer.ground[:, None]
     hips = performer.figure.position[:, JOINT["hips"], :2]
     return np.concatenate([0.5 * (hips + performer.root), floor], axis=1)
 
 
 def _end_state(plan: Plan, held: tuple[tuple[str, int], ...]) -> ActorState:
     route = plan.route
-    seat: Point | None = route.seat
     at = (float(route.at[0]), float(route.at[1]), route.floor)
-    return ActorState(at, float(route.heading), "sitting" if seat else "standing", seat, held)
+    seat: Point | None = route.seat
+    if route.low and route.bed != route.floor:
+        seat = (at[0], at[1], route.bed)
+    return ActorState(at, float(route.heading), route.posture, seat, held)

@@ -13,9 +13,12 @@ from numpy.typing import NDArray
 
 from runtime.body.skeleton import JOINT
 
-from .gait import MANNERS, WALK, Route
+from .gait import GAITS, WALK
+from .manner import PLAIN, Manner, manner_of
+from .postures import WAYS
 from .rotations import wrap
-from .types import Actor, Gaze, Grasp, Point, PropState, Reach, TargetPoint, Task, Timeline
+from .route import Going, Route
+from .types import Actor, FootMove, Gaze, Grasp, Jump, Point, PropState, Reach, TargetPoint, Task, Timeline
 
 Array = NDArray[np.float64]
 
@@ -79,6 +82,7 @@ class Plan:
     feelings: list[tuple[str, float, float]] = field(default_factory=list)
     end: float = 0.0
     acts: bool = False
+    manner: Manner = PLAIN
 
 
 def begin(name: str, actor: Actor) -> Plan:
@@ -88,7 +92,9 @@ def begin(name: str, actor: Actor) -> Plan:
     seat = state.seat if state.posture == "sitting" else None
     if state.posture == "sitting" and seat is None:
         seat = (*state.position[:2], state.position[2] + 0.45)
-    route = Route(actor.skeleton, state.position, state.heading, seat, person)
+    if state.posture in WAYS:
+        seat = state.seat
+    route = Route(actor.skeleton, state.position, state.heading, seat, person, state.posture)
     return Plan(name, actor, route, dict(state.held))
 
 
@@ -99,15 +105,19 @@ def plan_task(
     clip, route = task.clip, plan.route
     variant = clip.variant(task.variant)
     plan.acts = True
+    plan.manner = manner_of(task.manner)
     plan.homes = {k: p.stands for k, p in props.items() if p.stands is not None}
     route.wait(delay)
     clip_start = route.now
     if task.fetch is not None:
-        _fetch(plan, task, variant.stride, props, rng)
-    _go(plan, task, variant.stride, rng)
-    _sit_or_stand(plan, task, rng)
+        _fetch(plan, task, props, rng)
+    going = _going(plan, task)
+    _go(plan, task, going, rng)
+    _sit_or_stand(plan, task, going, rng)
+    if clip.posture:
+        route.settle(clip.posture, task.speed, clip.posture_time / task.speed)
     _take_needed(plan, task, props)
-    duration = variant.duration / task.speed
+    duration = variant.duration / (task.speed * plan.manner.tempo)
     if task.duration is not None:
         left = task.duration - route.now
         duration = float(np.clip(left, 0.7 * duration, 1.5 * duration)) if duration > 0 else 0.0
@@ -117,49 +127,74 @@ def plan_task(
     if duration > 0:
         window = _play(plan, variant.timeline, start, duration, task)
         route.now = max(route.now, window.start + duration)
+    if clip.rises:
+        route.settle("standing", task.speed)
     plan.end = route.now
+
+
+def _going(plan: Plan, task: Task, gait: str = "") -> Going:
+    """How this person goes anywhere in this task: the variant's gait, done in the task's manner."""
+    variant, manner = task.clip.variant(task.variant), plan.manner
+    style, (length, time) = variant.gait, variant.stride
+    style = replace(
+        style,
+        lift=style.lift + manner.lift,
+        bounce=style.bounce + manner.bounce,
+        arms=style.arms * manner.arms,
+        width=style.width * manner.width,
+        toes=max(style.toes, manner.toes),
+    )
+    return Going(
+        GAITS.get(gait or task.clip.travel, WALK), task.speed,
+        (length * manner.stride, time * manner.cadence), style, manner.wobble,
+    )  # fmt: skip
 
 
 def _fetch(
     plan: Plan,
     task: Task,
-    stride: tuple[float, float],
     props: dict[int, PropState],
     rng: np.random.Generator,
 ) -> None:
     """Goes to the thing needed, if there is a way to go, and takes it."""
     assert task.fetch is not None
     if len(task.fetch) > 1:
-        if plan.route.seat is not None:
-            plan.route.stand(STAND_TIME / task.speed)
-        manner = MANNERS.get(task.clip.travel, WALK)
-        plan.route.travel(task.fetch, task.fetch_heading, manner, task.speed, stride, rng)
+        _rise(plan.route, task)
+        plan.route.travel(task.fetch, task.fetch_heading, _going(plan, task), rng)
     _take_needed(plan, task, props)
 
 
-def _go(plan: Plan, task: Task, stride: tuple[float, float], rng: np.random.Generator) -> None:
+def _rise(route: Route, task: Task) -> None:
+    """Stands up, from whatever one is on."""
+    if route.seat is not None:
+        route.stand(STAND_TIME / task.speed)
+    route.settle("standing", task.speed)
+
+
+def _go(plan: Plan, task: Task, going: Going, rng: np.random.Generator) -> None:
     clip, route = task.clip, plan.route
     path = task.path if clip.travel != "none" else None
     if path is not None and (len(path) == 0 or _path_length(path) < 0.05):
         path = None
     heading = task.arrive_heading
     if path is not None:
-        if route.seat is not None:
-            route.stand(STAND_TIME / task.speed)
+        if clip.travel == "crawl":
+            route.settle("fours", task.speed)
+        else:
+            _rise(route, task)
         end = np.asarray(path, dtype=np.float64)[-1, :2]
         if heading is None and clip.seat != "down":
             heading = _facing(task, end)
         if clip.seat == "down" and task.target is not None and task.target.seat is not None:
             return  # the way leads on to the seat, see _sit_or_stand
-        manner = MANNERS.get(clip.travel, WALK)
-        route.travel(path, heading, manner, task.speed, stride, rng)
-    elif route.seat is None and clip.seat == "keep":
+        route.travel(path, heading, going, rng)
+    elif route.seat is None and clip.seat == "keep" and not route.low:
         turn = clip.turn * (1.0 if rng.random() < 0.5 else -1.0) if clip.turn and task.target is None else 0.0
-        to = heading if heading is not None else _facing(task, route.at)
+        to = heading if heading is not None else _facing(task, route.at[:2])
         if turn:
-            route.travel(None, route.heading + turn, WALK, task.speed, rng=rng)
+            route.travel(None, route.heading + turn, Going(speed=task.speed), rng)
         elif to is not None and (heading is not None or abs(wrap(to - route.heading)) > 0.6):
-            route.travel(None, to, WALK, task.speed, rng=rng)
+            route.travel(None, to, Going(speed=task.speed), rng)
 
 
 def _facing(task: Task, at: Array) -> float | None:
@@ -175,20 +210,19 @@ def _facing(task: Task, at: Array) -> float | None:
     return float(np.arctan2(d[1], d[0])) if np.hypot(*d) > 0.15 else None
 
 
-def _sit_or_stand(plan: Plan, task: Task, rng: np.random.Generator) -> None:
+def _sit_or_stand(plan: Plan, task: Task, going: Going, rng: np.random.Generator) -> None:
     clip, route = task.clip, plan.route
-    if clip.seat == "up" and route.seat is not None:
-        route.stand(STAND_TIME / task.speed)
+    if clip.seat == "up":
+        _rise(route, task)
     seat = task.target.seat if task.target is not None else None
     if clip.seat != "down" or seat is None or task.target is None:
         return
-    if route.seat is not None:
-        if np.hypot(route.seat[0] - seat[0], route.seat[1] - seat[1]) < 0.3:
-            return
-        route.stand(STAND_TIME / task.speed)
+    if route.seat is not None and np.hypot(route.seat[0] - seat[0], route.seat[1] - seat[1]) < 0.3:
+        return
+    _rise(route, task)
     facing = task.target.facing if task.target.facing is not None else task.arrive_heading
     if facing is None:
-        away = route.at - np.array(seat[:2])
+        away = route.at[:2] - np.array(seat[:2])
         facing = float(np.arctan2(away[1], away[0]))
     stand = route.stand_point(seat, facing)
     ways = (
@@ -197,7 +231,7 @@ def _sit_or_stand(plan: Plan, task: Task, rng: np.random.Generator) -> None:
     if ways:  # drop the path's end where it overshoots the place before the seat
         near = np.linalg.norm(ways[0] - stand, axis=1) > 0.35
         ways[0] = ways[0][: int(np.max(np.nonzero(near)[0])) + 1] if near.any() else ways[0][:1]
-    route.travel(np.concatenate([*ways, stand[None]]), facing, WALK, task.speed, rng=rng)
+    route.travel(np.concatenate([*ways, stand[None]]), facing, going, rng)
     route.sit(seat, facing, SIT_TIME / task.speed)
 
 
@@ -230,26 +264,43 @@ def _play(plan: Plan, timeline: Timeline, start: float, duration: float, task: T
     hands = choose_hands(plan, target, start)
     window = Window(timeline, start, duration, hands, target, second, partner)
     plan.windows.append(window)
+    _footwork(plan, window)
     for grasp in timeline.grasps:
         _grasp(plan, grasp, hands, window.at(grasp.time), target, second, partner)
     return window
+
+
+def _footwork(plan: Plan, window: Window) -> None:
+    """Steps and jumps of a timeline, for somebody on their feet."""
+    route = plan.route
+    if route.seat is not None or route.low:
+        return
+    moves: list[FootMove | Jump] = sorted(
+        (*window.timeline.steps, *window.timeline.jumps), key=lambda m: m.start
+    )
+    for move in moves:
+        start, end = window.at(move.start), window.at(move.end)
+        if isinstance(move, Jump):
+            route.jump(move, start, end)
+        else:
+            route.step(move, start, end)
 
 
 def _turn_to_reach(plan: Plan, timeline: Timeline, task: Task) -> float:
     """Seconds spent on turning to the first thing a hand goes to, where that is not before one."""
     route = plan.route
     words = [r.to for r in timeline.reaches if r.to in ("target", "second", "meet")]
-    if not words or route.seat is not None:
+    if not words or route.seat is not None or route.low:
         return 0.0
     point = task.second if words[0] in ("second", "meet") else task.target
     if point is None or (point.object is not None and point.object in plan.held.values()):
         return 0.0
-    d = np.array(point.position[:2]) - route.at
+    d = np.array(point.position[:2]) - route.at[:2]
     bearing = float(wrap(np.arctan2(d[1], d[0]) - route.heading))
     if abs(bearing) < 1.1 or np.hypot(*d) < 0.12:
         return 0.0
     began = route.now
-    route.travel(None, route.heading + bearing, WALK, task.speed)
+    route.travel(None, route.heading + bearing, Going(speed=task.speed))
     return route.now - began
 
 
@@ -292,14 +343,14 @@ def put_place(thing: int, target: TargetPoint | None, second: TargetPoint | None
 def _home(plan: Plan, thing: int) -> Point | None:
     """Where a thing was taken from, if one can put it back without a step."""
     place = plan.homes.get(thing)
-    if place is None or np.hypot(*(np.array(place[:2]) - plan.route.at)) > 1.25:
+    if place is None or np.hypot(*(np.array(place[:2]) - plan.route.at[:2])) > 1.25:
         return None
     return place
 
 
 def choose_hands(plan: Plan, target: TargetPoint | None, time: float) -> dict[str, str]:
     """What the hand words mean for this person now."""
-    xy, yaw = plan.route.root(np.array([time]))
+    xy, yaw, _ = plan.route.root(np.array([time]))
     side = "r"
     if target is not None:
         d = np.array(target.position[:2]) - xy[0]
@@ -324,19 +375,21 @@ def other(hand: str) -> str:
 def add_partner(plan: Plan, timeline: Timeline, window: Window, giver: Plan) -> None:
     """The other person's part of an action, in step with ``window`` of the one who acts."""
     head = float(giver.actor.skeleton.bind[JOINT["head"]][2])
-    xy, _ = giver.route.root(np.array([window.at(0.5)]))
+    xy, _, _ = giver.route.root(np.array([window.at(0.5)]))
     x, y = float(xy[0, 0]), float(xy[0, 1])
     point = TargetPoint((x, y, 0.8 * head), (x, y, head), character=giver.name)
     route = plan.route
-    if route.seat is None:
-        to = float(np.arctan2(*(xy[0] - route.at)[::-1]))
+    if route.seat is None and not route.low:
+        to = float(np.arctan2(*(xy[0] - route.at[:2])[::-1]))
         if abs(wrap(to - route.heading)) > 0.9:
             route.now = max(0.0, window.start - 0.6)
-            route.travel(None, to, WALK, 1.0)
+            route.travel(None, to)
     hands = choose_hands(plan, point, window.start)
     if not plan.held:
         hands.update(near="r", free="r", holding="r", other="l")
-    plan.windows.append(Window(timeline, window.start, window.duration, hands, point, None, giver.name))
+    mine = Window(timeline, window.start, window.duration, hands, point, None, giver.name)
+    plan.windows.append(mine)
+    _footwork(plan, mine)
     plan.end = max(plan.end, route.now)
 
 

@@ -131,6 +131,7 @@ class Scene:
         layers = []
         if performer.sitting.max() > 0:
             layers = [Layer(k, lap[k], "lap", np.zeros(3), (0.35, -0.15, 1.35)) for k in (0, 1)]
+        layers += performer.resting(weight, carry)
         for window in plan.windows:
             for tip in window.timeline.tilts:
                 times = [window.at(x) for x in (tip.start, tip.arrive, tip.leave, tip.end)]
@@ -189,7 +190,7 @@ class Scene:
             extra[0 if other is not None and other.handle else 2] += reach.along
         if place is None:
             return None
-        xy, heading = performer.plan.route.root(np.array([arrive]))
+        xy, heading, _ = performer.plan.route.root(np.array([arrive]))
         return reach_layer(reach, k, (window.start, window.duration), self.t, place,
                            (xy[0], float(heading[0]), performer.skeleton), led,
                            extra, fingers)  # fmt: skip

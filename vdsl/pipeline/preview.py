@@ -29,7 +29,7 @@ from ..stage.assemble import StagedScene, palettes
 from .compile import Act
 from .filming import Camerawork, first_frame
 from .judging import GeometryJudge
-from .trial import CAST, NoTrialError, Trial, floor_script, stage_script, try_action
+from .trial import ACTOR, CAST, NoTrialError, Trial, floor_script, stage_script, try_action
 
 PAPER, INK, QUIET = "#f6f3ec", "#1b1c1f", "#6f6a61"
 #: Moments of an action's strip.
@@ -135,20 +135,20 @@ class Studio:
 
     def cast(self, names: Sequence[str], height: int = 560, turned: bool = False) -> Image.Image:
         """A line-up; of one person a turn-around."""
-        calls = {f"p{k}": name for k, name in enumerate(names)}
-        act = stage_script(floor_script("", calls), "cast", self.own)
-        way = at_rest(act)
         cell = (round(height * 0.46), height)
         cells = []
-        for turn in (-20, 70, 160) if len(names) == 1 else (-20,):
-            for k, name in enumerate(names):
-                person = way.performances[f"p{k}"]
-                x, y, z = person.position[0]
-                azimuth = float(person.heading[0]) + math.radians(turn)
-                # so long a lens that whoever stands a metre aside is out of so narrow a picture
-                eye = around((x, y, z + 0.96), azimuth, math.radians(86), 2.16, 85.0)
-                (image,) = self.stills(act.staged, [eye], cell, way)
-                cells.append((name if turn < 0 else "", "", image))
+        for name in names:
+            act = stage_script(floor_script(cast=name), name, self.own)
+            way = at_rest(act)
+            person = way.performances[ACTOR]
+            x, y, z = person.position[0]
+            turns = (-20, 70, 160) if len(names) == 1 else (-20,)
+            eyes = [
+                around((x, y, z + 0.98), person.heading[0] + math.radians(t), math.radians(86), 2.24, 70.0)
+                for t in turns
+            ]
+            for image in self.stills(act.staged, eyes, cell, way):
+                cells.append(("" if len(cells) and len(names) == 1 else name, "", image))
         return _grid(cells, min(len(cells), 8))
 
     # -- props -------------------------------------------------------------------------------
@@ -169,7 +169,7 @@ class Studio:
             )
             (image,) = self.stills(act.staged, [eye], (side, side))
             cells.append(
-                (name, " × ".join(f"{b - a:.2f}" for a, b in zip(low, high, strict=True)) + " m", image)
+                (name, " x ".join(f"{b - a:.2f}" for a, b in zip(low, high, strict=True)) + " m", image)
             )
         return _grid(cells, min(columns, len(cells)))
 
@@ -233,7 +233,7 @@ class Studio:
         span = ((y1 - y0), (x1 - x0)) if turned else ((x1 - x0), (y1 - y0))
         size = (width, max(200, round(width * (span[1] + 0.6) / (span[0] + 0.6))))
         size = (size[0] // 2 * 2, size[1] // 2 * 2)
-        focal = 300.0
+        focal = 50.0
         away = (span[1] + 0.6) * focal / _SENSOR
         middle = ((x0 + x1) / 2, (y0 + y1) / 2)
         lean = 1e-4  # straight down has no horizon: a hair off it says which way is up
@@ -278,7 +278,7 @@ def entrances(world: World, most: int = 2) -> list[Eye]:
             away = max(math.hypot(dx, dy), 1e-6)
             inside = min(0.45, 0.3 * away)
             at = (x + dx / away * inside, y + dy / away * inside, base + 1.6)
-            found.append(Eye(at, (middle[0], middle[1], base + 0.95), 20.0))
+            found.append(Eye(at, (middle[0], middle[1], base + 1.5), 20.0))
         if len(found) >= most:
             break
     return found

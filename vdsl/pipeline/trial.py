@@ -24,6 +24,8 @@ ACTOR, PARTNER = "anna", "ben"
 CAST = ("woman(top crimson)", "man(top navy)")
 #: Far more ways than any action has: every variant is wanted here.
 _EVERY_WAY = 64
+#: Half the side of the floor: things are placed from its corner.
+_MIDDLE = 6.0
 
 
 class NoTrialError(Exception):
@@ -87,7 +89,7 @@ def action_script(definition: ActionDef, catalog: Catalog, cast: tuple[str, str]
     big = [name for name in big if name != "table"]
     lines = []
     if small or table:
-        lines.append("        place table = table(width 1.6m), at (1.5, 1.1)m {")
+        lines.append("        place table = table(width 1.6m), at (7.5, 7.1)m {")
         for k, name in enumerate(small):
             along = (k - (len(small) - 1) / 2) * min(0.45, 1.3 / max(len(small), 1))
             lines.append(f"            place {name} = {name}, on top, at ({along:.2f}, -0.16)m")
@@ -95,7 +97,7 @@ def action_script(definition: ActionDef, catalog: Catalog, cast: tuple[str, str]
     beside = ((1.7, -0.9), (-1.7, 1.0), (-1.7, -0.9), (3.2, -0.9)) if lines else ((1.4, 1.0), (-1.4, 1.0),
               (3.0, 1.0), (-3.0, 1.0))  # fmt: skip
     for name, (x, y) in zip(big, beside, strict=False):
-        lines.append(f"        place {name} = {name}, at ({x}, {y})m")
+        lines.append(f"        place {name} = {name}, at ({x + _MIDDLE}, {y + _MIDDLE})m")
     both = PARTNER in words
     return "\n".join(
         (
@@ -104,8 +106,8 @@ def action_script(definition: ActionDef, catalog: Catalog, cast: tuple[str, str]
             "    time day",
             '    area floor, at (-6, -6)m, size (12, 12)m, floor plain, floor-color "#e9e5da" {',
             *lines,
-            f"        spot start, at {'(-0.7, 0)m, facing 0deg' if both else '(-0.6, -0.3)m, facing -40deg'}",
-            "        spot other, at (0.7, 0)m, facing 180deg",
+            f"        spot start, at {'(5.3, 6)m, facing 0deg' if both else '(5.4, 5.7)m, facing -40deg'}",
+            "        spot other, at (6.7, 6)m, facing 180deg",
             "    }",
             "}",
             f"character {ACTOR} = {cast[0]}",
@@ -119,23 +121,24 @@ def action_script(definition: ActionDef, catalog: Catalog, cast: tuple[str, str]
     )  # fmt: skip
 
 
-def floor_script(placed: str, cast: dict[str, str] | None = None, size: float = 12.0) -> str:
-    """A bare floor with entries placed on it, and people side by side doing nothing."""
-    cast = cast or {}
+def floor_script(placed: str = "", cast: str = "") -> str:
+    """A bare floor, 12 m by 12, with an entry placed on it, or somebody in its middle who does nothing."""
     lines = [
         'storyboard "trial"',
         "set trial_floor {",
         "    time day",
-        f"    area floor, at ({-size / 2}, {-size / 2})m, size ({size}, {size})m, floor plain, "
-        'floor-color "#e9e5da" {',
-        placed,
+        '    area floor, at (-6, -6)m, size (12, 12)m, floor plain, floor-color "#e9e5da" {',
+        f"        {placed}",
+        "        spot here, at (6, 6)m, facing -90deg",
+        "    }",
+        "}",
+        *([f"character {ACTOR} = {cast}"] if cast else []),
+        "scene trial = trial_floor",
+        *([f"{ACTOR} at here"] if cast else []),
+        "",
+        "/ (static wide eye-level)",
+        "",
     ]
-    lines += [f"        spot s{k}, at ({1.0 * k:.2f}, 0)m, facing -90deg" for k in range(len(cast))]
-    lines += ["    }", "}"]
-    lines += [f"character {name} = {what}" for name, what in cast.items()]
-    lines += ["scene trial = trial_floor"]
-    lines += [f"{name} at s{k}" for k, name in enumerate(cast)]
-    lines += ["", "/ (static wide eye-level)", ""]
     return "\n".join(lines)
 
 

@@ -1,13 +1,14 @@
 """Light by time of day: friendly, with a direction, never mud.
 
 Indoors the key comes in from the side the windows are on, high enough to reach over the wall;
-outdoors it is the sun over the street. Radiances are linear, backdrops sRGB.
+outdoors it is the sun over the street. A set whose `light` is that of lamps looks the same at any
+hour, only lower at night. Radiances are linear, backdrops sRGB.
 """
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from runtime.world import Light
 
@@ -56,18 +57,46 @@ _INDOORS = {
 }  # fmt: skip
 
 
+#: Places where the hour does not matter: underground, in a ship, by a fire. Never below what a face needs.
+_LAMPS = {
+    "lamps": _Hour(60, 235, (0.62, 0.58, 0.50), (1.02, 1.01, 0.98), (0.92, 0.89, 0.84),
+                   ((0.86, 0.86, 0.84), (0.86, 0.86, 0.84)), (0.90, 0.95, 0.97), 0.0),
+    "cool": _Hour(58, 235, (0.52, 0.64, 0.76), (0.80, 0.92, 1.04), (0.62, 0.70, 0.82),
+                  ((0.20, 0.25, 0.36), (0.12, 0.16, 0.26)), (0.24, 0.30, 0.46), 0.0),
+    "warm": _Hour(46, 250, (0.98, 0.68, 0.40), (0.80, 0.72, 0.66), (0.74, 0.60, 0.48),
+                  ((0.42, 0.36, 0.34), (0.34, 0.30, 0.31)), (1.0, 0.90, 0.80), 0.4),
+    "dim": _Hour(62, 225, (0.58, 0.57, 0.54), (0.66, 0.69, 0.73), (0.54, 0.55, 0.57),
+                 ((0.46, 0.48, 0.52), (0.40, 0.42, 0.47)), (0.80, 0.86, 0.90), 0.5),
+}  # fmt: skip
+#: How far lamps are turned down at night.
+_LOWERED = 0.82
+
 #: A lit window seen from the street at night.
 LAMPLIGHT: Colour = (0.93, 0.80, 0.55)
 
 
-def _hour(time: str, outdoor: bool) -> _Hour:
+def _hour(time: str, outdoor: bool, light: str) -> _Hour:
+    if light in _LAMPS:
+        lamps = _LAMPS[light]
+        return (
+            lamps
+            if time != "night"
+            else replace(
+                lamps, sun=_lowered(lamps.sun), sky=_lowered(lamps.sky), ground=_lowered(lamps.ground)
+            )
+        )
     hours = _OUTDOORS if outdoor else _INDOORS
     return hours.get(time, hours["day"])
 
 
+def _lowered(radiance: Colour) -> Colour:
+    r, g, b = radiance
+    return r * _LOWERED, g * _LOWERED, b * _LOWERED
+
+
 def make_light(definition: SetDef, time: str, room: tuple[str, ...] = ()) -> Light:
     """The light of a set, seen from one of its rooms (or all of it)."""
-    hour = _hour(time, definition.outdoor)
+    hour = _hour(time, definition.outdoor, definition.light)
     azimuth, elevation = math.radians(hour.azimuth), math.radians(hour.elevation)
     if not definition.outdoor:
         found = window_azimuth(definition, room)
@@ -103,5 +132,5 @@ def window_azimuth(definition: SetDef, room: tuple[str, ...]) -> float | None:
 def glass_tint(time: str, outdoor: bool) -> tuple[Colour, float, str]:
     """The colour window panes take at a time of day, how much of it (0..1), and as what they are drawn:
     at night glass is dark, save where somebody is at home behind it (:data:`LAMPLIGHT`)."""
-    hour = _hour(time, outdoor)
+    hour = _hour(time, outdoor, "daylight")
     return hour.glass, hour.glass_share, "plain" if time == "night" else "glass"

@@ -136,7 +136,7 @@ class Studio:
     def cast(self, names: Sequence[str], height: int = 560, turned: bool = False) -> Image.Image:
         """A line-up; of one person a turn-around."""
         cell = (round(height * 0.46), height)
-        cells = []
+        cells: list[tuple[str, str, Image.Image]] = []
         for name in names:
             act = stage_script(floor_script(cast=name), name, self.own)
             way = at_rest(act)
@@ -155,7 +155,7 @@ class Studio:
 
     def props(self, names: Sequence[str], side: int = 300, columns: int = 6) -> Image.Image:
         """Props side by side, each filling its picture, with its size."""
-        cells = []
+        cells: list[tuple[str, str, Image.Image]] = []
         for name in names:
             prop = self.catalog.get("prop", name)
             if not isinstance(prop, PropDef):
@@ -206,7 +206,7 @@ class Studio:
 
     def sets(self, names: Sequence[str], time: str = "", width: int = 420) -> Image.Image:
         """Many sets, each from where one comes in."""
-        cells = []
+        cells: list[tuple[str, str, Image.Image]] = []
         for name in names:
             act = self._set(name, time)
             size = (width, round(width * 9 / 16))

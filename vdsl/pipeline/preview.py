@@ -160,7 +160,7 @@ class Studio:
             prop = self.catalog.get("prop", name)
             if not isinstance(prop, PropDef):
                 raise NoTrialError(f"there is no prop `{name}`")
-            act = stage_script(floor_script(f"        place it = {name}, at (0, 0)m"), name, self.own)
+            act = stage_script(floor_script(f"place it = {name}, at (6, 6)m"), name, self.own)
             low, high = _bounds(act.staged.world, ("floor", "it"))
             reach = float(np.linalg.norm(np.subtract(high, low)))
             aim = tuple((a + b) / 2 for a, b in zip(low, high, strict=True))
@@ -231,10 +231,10 @@ class Studio:
         x0, y0, x1, y1 = _extent(world, within)
         turned = (y1 - y0) > (x1 - x0) * 1.05
         span = ((y1 - y0), (x1 - x0)) if turned else ((x1 - x0), (y1 - y0))
-        size = (width, max(200, round(width * (span[1] + 0.6) / (span[0] + 0.6))))
+        size = (width, max(200, round(width * (span[1] + 1.0) / (span[0] + 1.0))))
         size = (size[0] // 2 * 2, size[1] // 2 * 2)
-        focal = 50.0
-        away = (span[1] + 0.6) * focal / _SENSOR
+        focal = 85.0
+        away = (span[1] + 1.0) * focal / _SENSOR
         middle = ((x0 + x1) / 2, (y0 + y1) / 2)
         lean = 1e-4  # straight down has no horizon: a hair off it says which way is up
         off = (lean * away, 0.0) if turned else (0.0, -lean * away)

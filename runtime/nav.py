@@ -1,9 +1,9 @@
-"""Ways across a set's floor.
+"""Ways across a set's floors, up its stairs and through its doors.
 
-Assumes a :class:`~runtime.world.World` in metres whose ``floors`` are the ground people can stand on
-and whose ``solids`` are what they would bump into. Guarantees that every point of a path, its first and
+Assumes a :class:`~runtime.world.World` in metres. Guarantees that every point of a path, its first and
 last half step aside (they may start from a chair or end close to a table), keeps the body's radius from
-every obstacle, and that the same question always has the same answer.
+every obstacle, and that the same question always has the same answer. Places are (x, y) or (x, y, z);
+z says which floor is meant.
 """
 
 from __future__ import annotations
@@ -15,118 +15,83 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
-from skimage.graph import MCP_Geometric
 
-from .world import World
+from .grid import BODY_RADIUS, CELL, SNAP, Discs, Grid, grid_of, level_at
+from .paths import apart, costs, length, price, resample, shortest, ways
+from .world import Stairs, World
 
-CELL = 0.05  # edge of a grid cell, metres
-BODY_RADIUS = 0.25  # half of a person's width with room to swing the arms, metres
-STEP_OVER, DUCK_UNDER = 0.1, 1.8  # boxes lower than the first or starting above the second do not block
-SNAP = 0.9  # how far from walkable ground a start or goal may lie, metres
-_SPACING = 0.08  # between the points of a finished path, metres
+__all__ = [
+    "BODY_RADIUS",
+    "CELL",
+    "SNAP",
+    "Discs",
+    "Grid",
+    "find_paths",
+    "grid_of",
+    "level_at",
+    "nearest_free",
+    "obstacles",
+    "reachable",
+]
 
-#: People in the way: (x, y, radius) each.
-Discs = tuple[tuple[float, float, float], ...]
+Array = NDArray[np.float64]
+Place = tuple[float, ...]
+_LANDING = 0.42  # how far before the first step and after the last one walks onto the stairs, metres
+_LANE = 0.9  # how far apart people go up side by side, metres
 
 
-@dataclass(frozen=True, eq=False)
-class Grid:
-    """Floor of a world in cells of 5 cm.
+@dataclass(frozen=True)
+class _Lane:
+    """A line up a flight of stairs: levels it joins, and where it begins and ends on them."""
 
-    origin: world (x, y) of the corner of cell (0, 0)
-    clearance: float32 [NX, NY], metres from the cell's centre to the nearest thing that blocks
-    owner: int32 [NX, NY], id of the object whose box blocks the cell, -1 walkable, -2 no floor or a wall
-    """
+    low: int
+    high: int
+    foot: tuple[float, float, float]
+    head: tuple[float, float, float]
+    stairs: Stairs
 
-    origin: tuple[float, float]
-    clearance: NDArray[np.float32]
-    owner: NDArray[np.int32]
+    def end(self, level: int) -> tuple[float, float, float]:
+        return self.foot if level == self.low else self.head
 
-    def cell(self, points: NDArray[np.float64]) -> NDArray[np.int64]:
-        """Indices [..., 2] of the cells of points [..., 2], kept inside the grid."""
-        index = np.floor((np.asarray(points) - self.origin) / CELL).astype(np.int64)
-        return np.clip(index, 0, np.array(self.clearance.shape) - 1)
-
-    def point(self, cells: NDArray[np.int64]) -> NDArray[np.float64]:
-        """Centres [..., 2] of cells [..., 2], metres."""
-        return (np.asarray(cells) + 0.5) * CELL + np.array(self.origin)
-
-    def clearance_at(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Metres to the nearest obstacle of points [..., 2]; 0 outside the grid."""
-        index = np.floor((np.asarray(points) - self.origin) / CELL).astype(np.int64)
-        inside = np.all((index >= 0) & (index < np.array(self.clearance.shape)), axis=-1)
-        cell = self.cell(points)
-        return np.where(inside, self.clearance[cell[..., 0], cell[..., 1]], 0.0)
-
-    def with_people(self, people: Discs) -> Grid:
-        """The same floor with people standing on it."""
-        if not people:
-            return self
-        nx, ny = self.clearance.shape
-        x = (np.arange(nx) + 0.5) * CELL + self.origin[0]
-        y = (np.arange(ny) + 0.5) * CELL + self.origin[1]
-        clearance = self.clearance.copy()
-        for px, py, radius in people:
-            away = np.hypot(x[:, None] - px, y[None, :] - py) - radius
-            np.minimum(clearance, np.maximum(away, 0.0), out=clearance, casting="same_kind")
-        return Grid(self.origin, clearance, self.owner)
+    def other(self, level: int) -> int:
+        return self.high if level == self.low else self.low
 
 
 @lru_cache(maxsize=16)
-def grid_of(world: World) -> Grid:
-    """The occupancy grid of a world, made once."""
-    floors = np.array(world.floors, dtype=np.float64).reshape(-1, 4)
-    if not len(floors):
-        return Grid((0.0, 0.0), np.zeros((1, 1), np.float32), np.full((1, 1), -2, np.int32))
-    low = floors[:, :2].min(axis=0) - 2 * CELL
-    shape = np.ceil((floors[:, 2:].max(axis=0) + 2 * CELL - low) / CELL).astype(int)
-    x = (np.arange(shape[0]) + 0.5) * CELL + low[0]
-    y = (np.arange(shape[1]) + 0.5) * CELL + low[1]
-    owner = np.full(tuple(shape), -2, np.int32)
-    for x0, y0, x1, y1 in floors:
-        owner[np.ix_((x >= x0) & (x <= x1), (y >= y0) & (y <= y1))] = -1
-    solids = world.solids
-    bottom, top = solids.centre[:, 2] - solids.half[:, 2], solids.centre[:, 2] + solids.half[:, 2]
-    for b in np.flatnonzero((top > STEP_OVER) & (bottom < DUCK_UNDER)):
-        _block(owner, x, y, solids.centre[b], solids.half[b], solids.yaw[b], int(solids.object[b]))
-    clearance = ndimage.distance_transform_edt(owner == -1).astype(np.float32) * CELL
-    return Grid((float(low[0]), float(low[1])), clearance, owner)
-
-
-def _block(
-    owner: NDArray[np.int32],
-    x: NDArray[np.float64],
-    y: NDArray[np.float64],
-    centre: NDArray[np.float64],
-    half: NDArray[np.float64],
-    yaw: float,
-    object_id: int,
-) -> None:
-    """Mark the cells under one box (in place, on the grid being built)."""
-    reach = float(np.hypot(half[0], half[1]))
-    i0, i1 = np.searchsorted(x, (centre[0] - reach, centre[0] + reach))
-    j0, j1 = np.searchsorted(y, (centre[1] - reach, centre[1] + reach))
-    dx, dy = x[i0:i1, None] - centre[0], y[None, j0:j1] - centre[1]
-    c, s = np.cos(yaw), np.sin(yaw)
-    inside = (np.abs(c * dx + s * dy) <= half[0] + CELL / 2) & (np.abs(c * dy - s * dx) <= half[1] + CELL / 2)
-    owner[i0:i1, j0:j1][inside] = object_id if object_id >= 0 else -2
+def _lanes(world: World) -> tuple[_Lane, ...]:
+    """All ways up and down; a wide flight has several."""
+    found = []
+    for stairs in world.stairs:
+        (lx, ly, lz), (hx, hy, hz), (ax, ay) = stairs.low, stairs.high, stairs.ahead
+        room = max(stairs.width - 2 * BODY_RADIUS - 0.1, 0.0)
+        count = int(room / _LANE) + 1
+        for k in range(count):
+            side = (k - (count - 1) / 2) * (room / max(count - 1, 1))
+            dx, dy = -side * ay, side * ax
+            foot = (lx + dx - _LANDING * ax, ly + dy - _LANDING * ay, lz)
+            head = (hx + dx + _LANDING * ax, hy + dy + _LANDING * ay, hz)
+            low, high = level_at(world, foot), level_at(world, head)
+            if low != high:
+                found.append(_Lane(low, high, foot, head, stairs))
+    return tuple(found)
 
 
 def nearest_free(
     world: World,
-    point: tuple[float, float],
+    point: Place,
     people: Discs = (),
     radius: float = BODY_RADIUS,
     within: float = 3.0,
-    start: tuple[float, float] | None = None,
-) -> tuple[float, float] | None:
-    """The walkable place closest to a point, None if there is none within that many metres.
+    start: Place | None = None,
+) -> tuple[float, float, float] | None:
+    """The walkable place closest to a point, on its floor; None if there is none within that many metres.
 
-    start: where somebody would come from; only places joined to it by walkable ground count
+    start: where somebody would come from; only places joined to it by walkable ground and stairs count
     """
-    grid = grid_of(world).with_people(people)
-    free = _component(grid, radius, start) if start is not None else grid.clearance >= radius
-    cells = np.argwhere(free)
+    level = level_at(world, start if len(point) < 3 and start is not None else point)
+    grid = grid_of(world, level).with_people(people)
+    free = grid.free(radius) if start is None else _joined(world, start, people, radius).get(level)
+    cells = np.argwhere(free) if free is not None else np.zeros((0, 2), np.int64)
     if not len(cells):
         return None
     centres = grid.point(cells)
@@ -134,31 +99,73 @@ def nearest_free(
     best = int(np.argmin(away))
     if away[best] > within:
         return None
-    return float(centres[best, 0]), float(centres[best, 1])
+    return float(centres[best, 0]), float(centres[best, 1]), grid.height
 
 
 def reachable(
-    world: World,
-    start: tuple[float, float],
-    goal: tuple[float, float],
-    people: Discs = (),
-    radius: float = BODY_RADIUS,
+    world: World, start: Place, goal: Place, people: Discs = (), radius: float = BODY_RADIUS
 ) -> bool:
-    """Whether walkable ground joins the two places."""
-    grid = grid_of(world).with_people(people)
-    a, b = _snap(grid, start, radius), _snap(grid, goal, radius)
-    if a is None or b is None:
-        return False
-    labels, _ = ndimage.label(grid.clearance >= radius, structure=np.ones((3, 3)))
-    return bool(labels[a] == labels[b])
+    """Whether walkable ground and stairs join the two places."""
+    level = level_at(world, goal)
+    cell = grid_of(world, level).with_people(people).snap(np.array(goal), radius)
+    free = _joined(world, start, people, radius).get(level)
+    return cell is not None and free is not None and bool(free[cell])
 
 
-def obstacles(world: World, start: tuple[float, float], goal: tuple[float, float]) -> list[int]:
-    """Ids of the objects that would have to go for a way from start to goal, in its order; −1 for walls."""
-    grid = grid_of(world)
+@lru_cache(maxsize=32)
+def _joined(world: World, start: Place, people: Discs, radius: float) -> dict[int, NDArray[np.bool_]]:
+    """The cells of each level that can be walked to from a place."""
+    first = level_at(world, start)
+    found: dict[int, NDArray[np.bool_]] = {}
+    labels: dict[int, tuple[Grid, NDArray[np.int32]]] = {}
+
+    def spread(level: int, point: Place, within: float) -> bool:
+        """Add the ground around a point; whether there was any that is new."""
+        if level not in labels:
+            grid = grid_of(world, level).with_people(people)
+            labels[level] = grid, ndimage.label(grid.free(radius), structure=np.ones((3, 3)))[0]
+        grid, label = labels[level]
+        cell = grid.snap(np.array(point), radius, within)
+        if cell is None or (level in found and found[level][cell]):
+            return False
+        found[level] = found.get(level, np.zeros(label.shape, bool)) | (label == label[cell])
+        return True
+
+    open_ = [first] if spread(first, start, SNAP) else []
+    while open_:
+        level = open_.pop()
+        for lane in _lanes(world):
+            if level not in (lane.low, lane.high):
+                continue
+            cell = labels[level][0].snap(np.array(lane.end(level)), radius, 0.3)
+            beyond = lane.other(level)
+            if cell is not None and found[level][cell] and spread(beyond, lane.end(beyond), 0.3):
+                open_.append(beyond)
+    return found
+
+
+def obstacles(world: World, start: Place, goal: Place) -> list[int]:
+    """Ids of the objects that would have to go for a way from start to goal, in its order; −1 for walls.
+
+    On two floors: of what is in the way to the nearest stairs, nothing where none join them.
+    """
+    a, b = level_at(world, start), level_at(world, goal)
+    if a == b:
+        return _obstacles(grid_of(world, a), start, goal)
+    found: list[int] = []
+    for route in _routes(world, a, b)[:1]:
+        here = start
+        for level, lane in zip(_levels(route, a), route, strict=True):
+            found += _obstacles(grid_of(world, level), here, lane.end(level))
+            here = lane.end(lane.other(level))
+        found += _obstacles(grid_of(world, b), here, goal)
+    return list(dict.fromkeys(found))
+
+
+def _obstacles(grid: Grid, start: Place, goal: Place) -> list[int]:
     cost = np.where(grid.clearance >= BODY_RADIUS, 1.0, np.where(grid.owner >= -1, 60.0, 900.0))
     first, last = grid.cell(np.array(start)), grid.cell(np.array(goal))
-    cells = _shortest(cost, (int(first[0]), int(first[1])), (int(last[0]), int(last[1])))
+    cells = shortest(cost, (int(first[0]), int(first[1])), (int(last[0]), int(last[1])))
     if cells is None:
         return []
     reach = int(BODY_RADIUS / CELL)
@@ -173,177 +180,131 @@ def obstacles(world: World, start: tuple[float, float], goal: tuple[float, float
 
 def find_paths(
     world: World,
-    start: tuple[float, float],
-    goal: tuple[float, float],
+    start: Place,
+    goal: Place,
     count: int = 1,
     radius: float = BODY_RADIUS,
     people: Discs = (),
-) -> list[NDArray[np.float64]]:
+) -> list[Array]:
     """Up to ``count`` truly different smooth ways from start to goal, the shortest first.
 
     Two ways differ when somewhere they are 0.4 m apart or more; none is longer than 1.8 times the first.
-    people: (x, y, radius) of others standing in the way
-    returns: float64 [K, 2] arrays, metres, about 8 cm between points; empty when there is no way
+    people: others standing in the way
+    returns: float64 [K, 3] arrays, metres, about 8 cm between points; z is that of the floor, and rises
+        evenly from the foot of stairs to their head; empty when there is no way
     """
-    start_xy, goal_xy = np.array(start, float)[:2], np.array(goal, float)[:2]
-    grid = grid_of(world).with_people(people)
-    first = _snap(grid, (float(start_xy[0]), float(start_xy[1])), radius)
-    last = _snap(grid, (float(goal_xy[0]), float(goal_xy[1])), radius)
-    if first is None or last is None:
-        return []
-    free = grid.clearance >= radius
-    base = np.where(free, 1.0 + 1.5 * np.clip(1.0 - grid.clearance / (2.2 * radius), 0.0, 1.0), -1.0)
-    paths: list[NDArray[np.float64]] = []
-    cost = base
-    for _ in range(2 * count):
-        cells = _shortest(cost, first, last)
-        if cells is None:
-            break
-        path = _finish(grid, free, cost, cells, start_xy, goal_xy)
-        if not paths or (_apart(path, paths) >= 0.4 and _length(path) <= 1.8 * _length(paths[0]) + 0.5):
-            paths.append(path)
-        if len(paths) == count:
-            break
-        cost = _discourage(grid, cost, free, path)
-    return paths
+    a, b = level_at(world, start), level_at(world, goal)
+    if a == b:
+        grid = grid_of(world, a).with_people(people)
+        flat = ways(grid, np.array(start[:2], float), np.array(goal[:2], float), count, radius)
+        if flat:
+            return [_at_height(path, grid.height) for path in flat]
+    found: list[Array] = []
+    for route in _cheapest(world, start, goal, people, radius):
+        for path in _along(world, route, start, goal, count, radius, people):
+            if not found or (apart(path, found) >= 0.4 and length(path) <= 1.8 * length(found[0]) + 0.5):
+                found.append(path)
+            if len(found) == count:
+                return found
+    return found
 
 
-def _snap(grid: Grid, point: tuple[float, float], radius: float) -> tuple[int, int] | None:
-    """The nearest walkable cell to a point, if it is near enough."""
-    i, j = grid.cell(np.array(point))
-    if grid.clearance[i, j] >= radius and grid.clearance_at(np.array(point)) >= radius:
-        return int(i), int(j)
-    span = int(SNAP / CELL) + 1
-    i0, j0 = max(0, i - span), max(0, j - span)
-    cells = np.argwhere(grid.clearance[i0 : i + span + 1, j0 : j + span + 1] >= radius) + np.array((i0, j0))
-    if not len(cells):
-        return None
-    away = np.linalg.norm(grid.point(cells) - np.array(point), axis=1)
-    best = int(np.argmin(away))
-    return (int(cells[best, 0]), int(cells[best, 1])) if away[best] <= SNAP else None
+def _at_height(path: Array, height: float) -> Array:
+    return np.concatenate([path, np.full((len(path), 1), height)], axis=1)
 
 
-def _component(grid: Grid, radius: float, start: tuple[float, float]) -> NDArray[np.bool_]:
-    """Walkable cells joined to the start."""
-    cell = _snap(grid, start, radius)
-    labels, _ = ndimage.label(grid.clearance >= radius, structure=np.ones((3, 3)))
-    if cell is None:
-        return np.zeros(labels.shape, bool)
-    return np.asarray(labels == labels[cell])
+def _levels(route: tuple[_Lane, ...], first: int) -> list[int]:
+    """The level each lane of a route is entered from."""
+    levels = [first]
+    for lane in route[:-1]:
+        levels.append(lane.other(levels[-1]))
+    return levels[: len(route)]
 
 
-def _shortest(
-    cost: NDArray[np.float64], first: tuple[int, int], last: tuple[int, int]
-) -> NDArray[np.int64] | None:
-    search = MCP_Geometric(cost)
-    total, _ = search.find_costs([first], [last])
-    if not np.isfinite(total[last]):
-        return None
-    return np.array(search.traceback(last), dtype=np.int64)
+def _routes(world: World, first: int, last: int, most: int = 4) -> list[tuple[_Lane, ...]]:
+    """Ways over stairs from level to level, none visited twice; from a level to itself over another."""
+    out: list[tuple[_Lane, ...]] = []
+
+    def go(level: int, taken: tuple[_Lane, ...], seen: frozenset[int]) -> None:
+        for lane in _lanes(world):
+            if level not in (lane.low, lane.high) or lane in taken:
+                continue
+            beyond = lane.other(level)
+            if beyond == last:
+                out.append((*taken, lane))
+            elif beyond not in seen and len(taken) + 1 < most:
+                go(beyond, (*taken, lane), seen | {beyond})
+
+    go(first, (), frozenset({first}))
+    return out
 
 
-def _discourage(
-    grid: Grid, cost: NDArray[np.float64], free: NDArray[np.bool_], path: NDArray[np.float64]
-) -> NDArray[np.float64]:
-    """Make ground near a way already found expensive, its two ends aside."""
-    length = _length(path)
-    along = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(path, axis=0), axis=1))]
-    end = min(0.4, 0.2 * length)
-    middle = path[(along >= end) & (along <= length - end)]
-    if not len(middle):
-        return cost
-    mark = np.ones(cost.shape, bool)
-    cells = grid.cell(middle)
-    mark[cells[:, 0], cells[:, 1]] = False
-    away = ndimage.distance_transform_edt(mark) * CELL
-    return np.where(free, cost + 6.0 * np.clip(1.0 - away / 0.7, 0.0, 1.0), -1.0)
+def _cheapest(
+    world: World, start: Place, goal: Place, people: Discs, radius: float
+) -> list[tuple[_Lane, ...]]:
+    """Routes over stairs that can be walked, the cheapest first; of the lanes of one flight only one."""
+    a, b = level_at(world, start), level_at(world, goal)
+    maps: dict[tuple[int, Place], Array] = {}
+
+    def spent(level: int, origin: Place, to: Place) -> float:
+        grid = grid_of(world, level).with_people(people)
+        if (level, origin) not in maps:
+            cell = grid.snap(np.array(origin), radius)
+            blocked = np.full(grid.clearance.shape, np.inf)
+            maps[level, origin] = blocked if cell is None else costs(price(grid, radius), cell)
+        end = grid.snap(np.array(to), radius, 0.3)
+        return math.inf if end is None else float(maps[level, origin][end]) * CELL
+
+    priced: list[tuple[float, int, tuple[_Lane, ...]]] = []
+    for number, route in enumerate(_routes(world, a, b)):
+        levels = _levels(route, a)
+        total = spent(a, start, route[0].end(a)) + spent(b, goal, route[-1].end(b))
+        for before, lane, level in zip(route[:-1], route[1:], levels[1:], strict=True):
+            total += spent(level, before.end(level), lane.end(level))
+        total += sum(1.5 * math.dist(lane.foot, lane.head) for lane in route)
+        if math.isfinite(total):
+            priced.append((total, number, route))
+    kept: dict[tuple[Stairs, ...], tuple[_Lane, ...]] = {}
+    for _, _, route in sorted(priced, key=lambda p: p[:2]):
+        kept.setdefault(tuple(lane.stairs for lane in route), route)
+    return list(kept.values())
 
 
-def _finish(
-    grid: Grid,
-    free: NDArray[np.bool_],
-    cost: NDArray[np.float64],
-    cells: NDArray[np.int64],
-    start: NDArray[np.float64],
-    goal: NDArray[np.float64],
-) -> NDArray[np.float64]:
-    """Cells to a smooth polyline between the true ends, never through what the cells avoid."""
-    knots = grid.point(_pull(cost, cells))
-    if len(knots) > 1:
-        if free[tuple(grid.cell(start))]:
-            knots[0] = start
-        if free[tuple(grid.cell(goal))]:
-            knots[-1] = goal
-    for rounds in (3, 2, 1, 0):
-        smooth = knots
-        for _ in range(rounds):
-            smooth = _cut_corners(smooth)
-        dense = _resample(smooth)
-        index = grid.cell(dense)
-        if rounds == 0 or free[index[:, 0], index[:, 1]].all():
-            break
-    ends = [dense]
-    if np.linalg.norm(dense[0] - start) > 1e-6:
-        ends.insert(0, start[None])
-    if np.linalg.norm(dense[-1] - goal) > 1e-6:
-        ends.append(goal[None])
-    return _resample(np.concatenate(ends))
+def _along(
+    world: World,
+    route: tuple[_Lane, ...],
+    start: Place,
+    goal: Place,
+    count: int,
+    radius: float,
+    people: Discs,
+) -> list[Array]:
+    """Ways that go over these stairs, leg by leg."""
+    legs: list[list[Array]] = []
+    here: Place = start
+    a, b = level_at(world, start), level_at(world, goal)
+    stops = [(level, lane.end(level), lane) for level, lane in zip(_levels(route, a), route, strict=True)]
+    for level, to, lane in [*stops, (b, goal, None)]:
+        grid = grid_of(world, level).with_people(people)
+        flat = ways(grid, np.array(here[:2], float), np.array(to[:2], float), count, radius)
+        if not flat:
+            return []
+        legs.append([_at_height(path, grid.height) for path in flat])
+        if lane is not None:
+            legs.append([_climb(lane, up=lane.low == level)])
+            here = lane.end(lane.other(level))
+    out = []
+    for k in range(max(len(leg) for leg in legs)):
+        out.append(np.concatenate([leg[min(k, len(leg) - 1)] for leg in legs]))
+    return [path[np.r_[True, np.linalg.norm(np.diff(path, axis=0), axis=1) > 1e-6]] for path in out]
 
 
-def _pull(cost: NDArray[np.float64], cells: NDArray[np.int64]) -> NDArray[np.int64]:
-    """Drop cells wherever the straight line between their neighbours costs no more."""
-    steps = np.linalg.norm(np.diff(cells, axis=0), axis=1)
-    price = cost[cells[:, 0], cells[:, 1]]
-    spent = np.r_[0.0, np.cumsum(steps * 0.5 * (price[1:] + price[:-1]))]
-    kept, i = [0], 0
-    while i < len(cells) - 1:
-        j, stride = i + 1, max(1, (len(cells) - 1 - i) // 24)
-        for k in range(len(cells) - 1, i + 1, -stride):
-            straight = _line_cost(cost, cells[i], cells[k])
-            if straight is not None and straight <= (spent[k] - spent[i]) * 1.02:
-                j = k
-                break
-        kept.append(j)
-        i = j
-    return cells[kept]
-
-
-def _line_cost(cost: NDArray[np.float64], a: NDArray[np.int64], b: NDArray[np.int64]) -> float | None:
-    """Cost of the straight line between two cells, None when it leaves walkable ground."""
-    (x, y), (dx, dy) = a.tolist(), (b - a).tolist()
-    length = math.hypot(dx, dy)
-    steps = math.ceil(length * 2)
-    t = np.arange(steps + 1) / max(steps, 1)
-    price = cost[np.rint(x + t * dx).astype(np.int64), np.rint(y + t * dy).astype(np.int64)]
-    return None if price.min() < 0 else float(price.sum()) / (steps + 1) * length
-
-
-def _cut_corners(points: NDArray[np.float64]) -> NDArray[np.float64]:
-    """One round of corner cutting; no cut is longer than half a metre."""
-    if len(points) < 3:
-        return points
-    out = [points[0]]
-    for before, corner, after in zip(points[:-2], points[1:-1], points[2:], strict=True):
-        for end in (before, after):
-            d = end - corner
-            out.append(corner + d * min(0.25, 0.5 / max(float(np.linalg.norm(d)), 1e-9)))
-    out.append(points[-1])
-    return np.array(out)
-
-
-def _resample(points: NDArray[np.float64]) -> NDArray[np.float64]:
-    along = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))]
-    count = max(2, int(np.ceil(along[-1] / _SPACING)) + 1)
-    at = np.linspace(0.0, along[-1], count)
-    return np.stack([np.interp(at, along, points[:, k]) for k in range(2)], axis=1)
-
-
-def _length(path: NDArray[np.float64]) -> float:
-    return float(np.linalg.norm(np.diff(path, axis=0), axis=1).sum())
-
-
-def _apart(path: NDArray[np.float64], others: list[NDArray[np.float64]]) -> float:
-    """The least, over the others, of the greatest distance from this path to that one."""
-    return min(
-        float(np.linalg.norm(path[:, None] - other[None], axis=2).min(axis=1).max()) for other in others
-    )
+def _climb(lane: _Lane, up: bool) -> Array:
+    """[K, 3]: over the steps, from landing to landing; level on the landings, even between."""
+    s = lane.stairs
+    ahead = np.array([*s.ahead, 0.0])
+    foot, head = np.array(lane.foot), np.array(lane.head)
+    points = np.array([foot, foot + _LANDING * ahead, head - _LANDING * ahead, head])
+    points[1, 2], points[2, 2] = foot[2], head[2]
+    line = resample(points)
+    return line if up else line[::-1].copy()

@@ -6,16 +6,15 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from runtime.motion.types import TargetPoint
-from runtime.nav import BODY_RADIUS, Discs, grid_of, nearest_free, reachable
+from runtime.nav import BODY_RADIUS, Discs, grid_of, level_at, nearest_free, reachable
 from runtime.world import Spot, World, WorldObject
 
 from ..lang.ir import Target
 from ..lang.source import Source, Span
 from .cameras import find_object
-from .state import SceneState, room_middle
+from .state import SceneState, floor_under, room_middle
 
 ARM = 0.75  # metres on the floor within which a hand reaches a thing
 TALKING = 0.88  # metres between two people face to face
@@ -23,15 +22,21 @@ _EYES = 0.93  # of the standing height
 _BESIDE = 0.16  # metres between things on a table top
 
 Point = tuple[float, float, float]
+Place = tuple[float, ...]  # (x, y) or (x, y, z) on a floor
 
 
 @dataclass(frozen=True)
 class Stop:
-    """A place on the floor to stand at, metres, and the heading to have there, radians."""
+    """A place on a floor to stand at, metres, and the heading to have there, radians."""
 
     x: float
     y: float
     heading: float
+    z: float = 0.0
+
+    @property
+    def place(self) -> Point:
+        return self.x, self.y, self.z
 
 
 def target_point(target: Target, state: SceneState, near: Point, height: float = 1.65) -> TargetPoint:
@@ -45,10 +50,10 @@ def target_point(target: Target, state: SceneState, near: Point, height: float =
     if target.kind == "spot" and item is not None:
         spot = item.spot(target.path[-1])
         if spot is not None:
-            return _spot_point(spot)
+            return _spot_point(spot, state.world)
     if item is None or item.kind in ("room", "area"):
-        x, y = room_middle(state) if item is None else _middle(item)
-        return TargetPoint((x, y, 0.0), (x, y, 1.2))
+        x, y, z = room_middle(state) if item is None else _middle(item)
+        return TargetPoint((x, y, z), (x, y, z + 1.2))
     return _object_point(item, state, near)
 
 
@@ -57,16 +62,18 @@ def object_target(item: WorldObject) -> Target:
     return Target("object", item.path, item.path[-1], Span(Source("<set>", ""), 0, 0))
 
 
-def _middle(item: WorldObject) -> tuple[float, float]:
+def _middle(item: WorldObject) -> Point:
     spot = item.spot("middle")
-    point = spot.position if spot is not None else item.centre
-    return point[0], point[1]
+    x, y, _ = spot.position if spot is not None else item.centre
+    return x, y, item.low[2]
 
 
-def _spot_point(spot: Spot) -> TargetPoint:
+def _spot_point(spot: Spot, world: World) -> TargetPoint:
     x, y, z = spot.position
+    floor = floor_under(world, spot.position)
     seat = spot.position if spot.name.startswith("seat") else None
-    return TargetPoint(spot.position, (x, y, z if z > 0.3 else 1.2), facing=spot.facing, seat=seat)
+    gaze = (x, y, z if z > floor + 0.3 else floor + 1.2)
+    return TargetPoint(spot.position, gaze, facing=spot.facing, seat=seat)
 
 
 def _person_point(name: str, state: SceneState, near: Point, height: float) -> TargetPoint:
@@ -87,8 +94,8 @@ def _object_point(item: WorldObject, state: SceneState, near: Point) -> TargetPo
         matrix = prop.world_from_object
         grip = matrix[:3, :3] @ prop.grip + matrix[:3, 3]
         if prop.holder is not None and prop.holder[0] in state.actors:
-            x, y, _ = state.actors[prop.holder[0]].position
-            at: Point = (x, y, float(grip[2]) if grip[2] > 0.4 else 1.1)
+            x, y, z = state.actors[prop.holder[0]].position
+            at: Point = (x, y, float(grip[2]) if grip[2] > z + 0.4 else z + 1.1)
         else:
             at = (float(grip[0]), float(grip[1]), float(grip[2]))
         return TargetPoint(at, at, object=item.id)
@@ -98,7 +105,7 @@ def _object_point(item: WorldObject, state: SceneState, near: Point) -> TargetPo
     grip_spot = item.spot("grip")
     top = min(
         (s for s in item.spots if s.name.startswith("top")),
-        key=lambda s: math.hypot(s.position[0] - near[0], s.position[1] - near[1]),
+        key=lambda s: math.dist(s.position, near),
         default=None,
     )
     if grip_spot is not None:
@@ -106,7 +113,8 @@ def _object_point(item: WorldObject, state: SceneState, near: Point) -> TargetPo
     elif top is not None:
         contact = _free_top(item, top, state, stand, near)
     else:
-        contact = (centre[0], centre[1], min(centre[2], 1.1))
+        floor = floor_under(state.world, (centre[0], centre[1], item.low[2]))
+        contact = (centre[0], centre[1], min(centre[2], floor + 1.1))
     gaze = centre if top is None else (centre[0], centre[1], top.position[2])
     facing = seat.facing if seat is not None else (stand.facing if stand is not None else None)
     return TargetPoint(contact, gaze, facing=facing, seat=seat.position if seat is not None else None)
@@ -116,7 +124,7 @@ def _best_stand(item: WorldObject, near: Point) -> Spot | None:
     stands = [s for s in item.spots if s.name.startswith("stand")]
     return min(
         stands,
-        key=lambda s: math.hypot(s.position[0] - near[0], s.position[1] - near[1]),
+        key=lambda s: math.dist(s.position, near),
         default=None,
     )
 
@@ -166,8 +174,8 @@ def seat_of(target: Target | None, state: SceneState, who: str) -> Spot | None:
     taken = [a.seat for name, a in state.actors.items() if name != who and a.seat is not None]
     free = [s for s in found if all(math.dist(s.position, t) > 0.35 for t in taken)]
     if who in state.actors:
-        x, y, _ = state.actors[who].position
-        free.sort(key=lambda s: math.hypot(s.position[0] - x, s.position[1] - y))
+        here = state.actors[who].position
+        free.sort(key=lambda s: math.dist(s.position, here))
     return free[0] if free else None
 
 
@@ -178,7 +186,7 @@ def approach(
     target: Target,
     state: SceneState,
     who: str,
-    start: tuple[float, float] | None,
+    start: Place | None,
     taken: Discs = (),
 ) -> Stop | None:
     """Where to stand to be at a target; None when there is no such place joined to ``start``.
@@ -192,66 +200,64 @@ def approach(
     if target.kind == "spot" and item is not None:
         spot = item.spot(target.path[-1])
         if spot is not None and not spot.name.startswith("seat"):
-            return _at_spot(spot, state.world, people, start, wide=spot.position[2] > 0.2)
+            high = spot.position[2] - floor_under(state.world, spot.position)
+            return _at_spot(spot, state.world, people, start, wide=high > 0.2)
     seat = seat_of(target, state, who)
     if seat is not None:
         return _before_seat(seat, state.world, people, start)
     if item is None or item.kind in ("room", "area"):
-        x, y = room_middle(state) if item is None else _middle(item)
-        return _at_spot(Spot("middle", (x, y, 0.0)), state.world, people, start, wide=True)
+        middle = room_middle(state) if item is None else _middle(item)
+        return _at_spot(Spot("middle", middle), state.world, people, start, wide=True)
     if item.id in state.props:
         holder = state.props[item.id].holder
         if holder is not None and holder[0] in state.actors:
             return None if holder[0] == who else _before(holder[0], state, people, start)
         point = target_point(target, state, (0.0, 0.0, 0.0)).position
-        return _beside((point[0], point[1]), state.world, people, start, ARM + 0.1)
+        return _beside(point, state.world, people, start, ARM + 0.1)
     stand = next(
         (s for s in item.spots if s.name.startswith("stand") and _usable(s, state.world, people, start)), None
     )
     if stand is not None:
-        x, y, _ = stand.position
+        x, y, z = stand.position
         facing = stand.facing if stand.facing is not None else _towards((x, y), item.centre)
-        return Stop(x, y, facing)
+        return Stop(x, y, facing, z)
     return _around(item, state.world, people, start)
 
 
-def _towards(a: tuple[float, float], b: tuple[float, ...]) -> float:
+def _towards(a: tuple[float, ...], b: tuple[float, ...]) -> float:
     return math.atan2(b[1] - a[1], b[0] - a[0])
 
 
-def _usable(spot: Spot, world: World, people: Discs, start: tuple[float, float] | None) -> bool:
+def _usable(spot: Spot, world: World, people: Discs, start: Place | None) -> bool:
+    clear = _clear(world, spot.position, people)
+    return clear >= 0.8 * BODY_RADIUS and (start is None or reachable(world, start, spot.position, people))
+
+
+def _clear(world: World, point: Point, people: Discs) -> float:
+    """Metres from a place on a floor to what is nearest."""
+    grid = grid_of(world, level_at(world, point)).with_people(people)
+    return float(grid.clearance_at(np.array(point)))
+
+
+def _at_spot(spot: Spot, world: World, people: Discs, start: Place | None, wide: bool) -> Stop | None:
     x, y, _ = spot.position
-    clear = float(grid_of(world).with_people(people).clearance_at(_xy(x, y)))
-    return clear >= 0.8 * BODY_RADIUS and (start is None or reachable(world, start, (x, y), people))
-
-
-def _xy(x: float, y: float) -> NDArray[np.float64]:
-    return np.array((x, y))
-
-
-def _at_spot(
-    spot: Spot, world: World, people: Discs, start: tuple[float, float] | None, wide: bool
-) -> Stop | None:
-    x, y, _ = spot.position
-    found = nearest_free(world, (x, y), people, within=1.6 if wide else 1.3, start=start)
+    found = nearest_free(world, spot.position, people, within=1.6 if wide else 1.3, start=start)
     if found is None:
         return None
     moved = math.hypot(found[0] - x, found[1] - y)
     if moved < 0.05:
-        found = (x, y)
+        found = (x, y, found[2])
     facing = spot.facing if spot.facing is not None else (_towards(found, (x, y)) if moved > 0.05 else 0.0)
-    return Stop(*found, facing)
+    return Stop(found[0], found[1], facing, found[2])
 
 
-def _beside(
-    point: tuple[float, float], world: World, people: Discs, start: tuple[float, float] | None, within: float
-) -> Stop | None:
+def _beside(point: Point, world: World, people: Discs, start: Place | None, within: float) -> Stop | None:
     """The nearest free floor to a point, facing it."""
     found = nearest_free(world, point, people, within=within, start=start)
-    return None if found is None else Stop(*found, _towards(found, point))
+    return None if found is None else Stop(found[0], found[1], _towards(found, point), found[2])
 
 
-def _around(item: WorldObject, world: World, people: Discs, start: tuple[float, float] | None) -> Stop | None:
+def _around(item: WorldObject, world: World, people: Discs, start: Place | None) -> Stop | None:
     """Free floor nearest to an object's bounds, facing its middle."""
     centre = item.centre
     reach = math.hypot(item.high[0] - item.low[0], item.high[1] - item.low[1]) / 2
@@ -262,36 +268,39 @@ def _around(item: WorldObject, world: World, people: Discs, start: tuple[float, 
         edge = (
             min(max(centre[0] + 2 * reach * math.cos(a), item.low[0]), item.high[0]),
             min(max(centre[1] + 2 * reach * math.sin(a), item.low[1]), item.high[1]),
+            item.low[2],
         )
         found = nearest_free(world, edge, people, within=0.8, start=start)
         if found is not None:
             away = math.hypot(found[0] - edge[0], found[1] - edge[1])
             come = math.hypot(found[0] - start[0], found[1] - start[1]) if start is not None else 0.0
             if away + 0.3 * come < score:
-                best, score = Stop(*found, _towards(found, centre)), away + 0.3 * come
+                best = Stop(found[0], found[1], _towards(found, centre), found[2])
+                score = away + 0.3 * come
     return best
 
 
-def _before_seat(seat: Spot, world: World, people: Discs, start: tuple[float, float] | None) -> Stop | None:
+def _before_seat(seat: Spot, world: World, people: Discs, start: Place | None) -> Stop | None:
     facing = seat.facing if seat.facing is not None else 0.0
     x = seat.position[0] + 0.55 * math.cos(facing)
     y = seat.position[1] + 0.55 * math.sin(facing)
-    found = nearest_free(world, (x, y), people, within=0.7, start=start)
+    found = nearest_free(world, (x, y, seat.position[2]), people, within=0.7, start=start)
     if found is None:  # a chair pushed in: from the side or from behind
-        found = nearest_free(world, seat.position[:2], people, within=1.3, start=start)
-    return None if found is None else Stop(*found, facing)
+        found = nearest_free(world, seat.position, people, within=1.3, start=start)
+    return None if found is None else Stop(found[0], found[1], facing, found[2])
 
 
-def _before(name: str, state: SceneState, people: Discs, start: tuple[float, float] | None) -> Stop | None:
+def _before(name: str, state: SceneState, people: Discs, start: Place | None) -> Stop | None:
     """Face to face with somebody: in front of them, else as near to that as there is room."""
-    other = state.actors[name]
-    x, y, _ = other.position
+    other, world = state.actors[name], state.world
+    x, y, z = other.position
     for turn in (0.0, 0.35, -0.35, 0.7, -0.7, 1.1, -1.1, 1.6, -1.6, 2.2, -2.2, math.pi):
         for far in (TALKING, TALKING + 0.15, TALKING + 0.35):
             a = other.heading + turn
-            goal = (x + far * math.cos(a), y + far * math.sin(a))
-            clear = float(grid_of(state.world).with_people(people).clearance_at(_xy(*goal)))
-            if clear >= BODY_RADIUS and (start is None or reachable(state.world, start, goal, people)):
-                return Stop(*goal, _towards(goal, (x, y)))
-    found = nearest_free(state.world, (x, y), people, within=1.6, start=start)
-    return None if found is None else Stop(*found, _towards(found, (x, y)))
+            goal = (x + far * math.cos(a), y + far * math.sin(a), z)
+            if _clear(world, goal, people) >= BODY_RADIUS and (
+                start is None or reachable(world, start, goal, people)
+            ):
+                return Stop(goal[0], goal[1], _towards(goal, (x, y)), z)
+    found = nearest_free(world, other.position, people, within=1.6, start=start)
+    return None if found is None else Stop(found[0], found[1], _towards(found, (x, y)), found[2])

@@ -10,7 +10,7 @@ import numpy as np
 
 from runtime.body.skeleton import Skeleton
 from runtime.motion.types import ActorState, PropState
-from runtime.nav import Discs, nearest_free
+from runtime.nav import Discs, level_at, nearest_free
 from runtime.world import Spot, World, WorldObject
 
 from ..lang.diagnostics import Report
@@ -36,7 +36,9 @@ class SceneState:
     def people(self, but: str | None = None) -> Discs:
         """Everybody else as obstacles on the floor."""
         return tuple(
-            (a.position[0], a.position[1], PERSON_RADIUS) for name, a in self.actors.items() if name != but
+            (a.position[0], a.position[1], PERSON_RADIUS, a.position[2])
+            for name, a in self.actors.items()
+            if name != but
         )
 
 
@@ -86,8 +88,9 @@ def _placed(placement: Placement, state: SceneState, report: Report) -> ActorSta
             return None
         heading = seat.facing if seat.facing is not None else 0.0
         x, y, _ = seat.position
-        return ActorState((x, y, 0.0), heading, "sitting", seat.position)
-    crowd: Discs = tuple((x, y, _APART - 0.25) for x, y, _ in state.people())
+        floor = floor_under(state.world, seat.position)
+        return ActorState((x, y, floor), heading, "sitting", seat.position)
+    crowd: Discs = tuple((x, y, _APART - 0.25, z) for x, y, _, z in state.people())
     stop = approach(placement.at, state, placement.character, start=None, taken=crowd)
     stop = stop or approach(placement.at, state, placement.character, start=None)
     if stop is None:
@@ -98,16 +101,17 @@ def _placed(placement: Placement, state: SceneState, report: Report) -> ActorSta
             help="place them at something with free floor beside it",
         )
         return None
-    near = [a for a in state.actors.values() if math.dist(a.position[:2], (stop.x, stop.y)) < 1.6]
+    here = (stop.x, stop.y, stop.z)
+    near = [a for a in state.actors.values() if math.dist(a.position, here) < 1.6]
     if placement.facing is None and placement.at.kind == "spot" and near:
         x, y, _ = near[0].position
-        return ActorState((stop.x, stop.y, 0.0), math.atan2(y - stop.y, x - stop.x))
+        return ActorState(here, math.atan2(y - stop.y, x - stop.x))
     if placement.facing is None and placement.at.kind != "spot":
         middle = room_middle(state)
         away = math.hypot(middle[0] - stop.x, middle[1] - stop.y)
         heading = math.atan2(middle[1] - stop.y, middle[0] - stop.x) if away > 0.3 else stop.heading
-        return ActorState((stop.x, stop.y, 0.0), heading)
-    return ActorState((stop.x, stop.y, 0.0), stop.heading)
+        return ActorState(here, heading)
+    return ActorState(here, stop.heading)
 
 
 def _has_seat(target: Target, state: SceneState) -> bool:
@@ -128,39 +132,45 @@ def _facing(actor: ActorState, facing: Target, state: SceneState) -> ActorState:
     return ActorState(actor.position, math.atan2(dy, dx), actor.posture, actor.seat, actor.held)
 
 
+def floor_under(world: World, point: tuple[float, float, float]) -> float:
+    """Height of the floor a point is over."""
+    return world.storeys[level_at(world, point)].height
+
+
 def room_of(state: SceneState) -> WorldObject | None:
     """The room or area the scene plays in, where it is one."""
     return next((o for o in state.world.objects if state.room and o.path == state.room), None)
 
 
-def room_middle(state: SceneState) -> tuple[float, float]:
-    """A point in the middle of the scene: the room's spot ``middle``, else its centre."""
+def room_middle(state: SceneState) -> tuple[float, float, float]:
+    """A point on the floor in the middle of the scene: the room's spot ``middle``, else its centre."""
     room = room_of(state)
     if room is not None:
         spot: Spot | None = room.spot("middle")
-        point = spot.position if spot is not None else room.centre
-        return point[0], point[1]
+        x, y, _ = spot.position if spot is not None else room.centre
+        return x, y, room.low[2]
     middles = [o.spot("middle") for o in state.world.objects if o.kind in ("room", "area")]
     found = next((s for s in middles if s is not None), None)
     if found is not None:
-        return found.position[0], found.position[1]
-    if not state.world.floors:
-        return 0.0, 0.0
-    x0, y0, x1, y1 = max(state.world.floors, key=lambda f: (f[2] - f[0]) * (f[3] - f[1]))
-    return (x0 + x1) / 2, (y0 + y1) / 2
+        return found.position
+    levels = [level for level in state.world.storeys if level.floors]
+    if not levels:
+        return 0.0, 0.0, 0.0
+    x0, y0, x1, y1 = max(levels[0].floors, key=lambda f: (f[2] - f[0]) * (f[3] - f[1]))
+    return (x0 + x1) / 2, (y0 + y1) / 2, levels[0].height
 
 
 def _by_default(state: SceneState) -> ActorState:
     """A free spot near the middle, facing whoever is there already."""
     middle = room_middle(state)
-    crowd: Discs = tuple((x, y, _APART - 0.25) for x, y, _ in state.people())
+    crowd: Discs = tuple((x, y, _APART - 0.25, z) for x, y, _, z in state.people())
     spot = nearest_free(state.world, middle, crowd, within=50.0) or nearest_free(
         state.world, middle, (), within=50.0
     )
-    x, y = spot if spot is not None else middle
+    x, y, z = spot if spot is not None else middle
     others = list(state.actors.values())
     heading = 0.0
     if others:
-        nearest = min(others, key=lambda a: math.hypot(a.position[0] - x, a.position[1] - y))
+        nearest = min(others, key=lambda a: math.dist(a.position, (x, y, z)))
         heading = math.atan2(nearest.position[1] - y, nearest.position[0] - x)
-    return ActorState((x, y, 0.0), heading)
+    return ActorState((x, y, z), heading)

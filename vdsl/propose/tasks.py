@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from runtime.body.skeleton import Skeleton
 from runtime.motion.types import ActionClip, Talk, TargetPoint, Task, Timeline
-from runtime.nav import BODY_RADIUS, Discs, find_paths, obstacles, reachable
+from runtime.nav import Discs, find_paths, obstacles, reachable
 
 from ..lang.diagnostics import Report
 from ..lang.ir import Beat, Shot, Target
@@ -73,16 +73,16 @@ def errand(
     if where is None:
         turned = _turned_to(beat, clip, target, state)
         return Errand(replace(_task(clip, target, second, shot), arrive_heading=turned), (), None)
-    here = (actor.position[0], actor.position[1])
+    here = actor.position
     stop = approach(where, state, beat.character, here, taken)
     if stop is None:
         _unreachable(beat, where, state, here, report)
         return None
-    if clip.seat != "down" and math.hypot(stop.x - here[0], stop.y - here[1]) < _STANDS_THERE:
+    if clip.seat != "down" and math.dist(stop.place, here) < _STANDS_THERE:
         turn = replace(_task(clip, target, second, shot), arrive_heading=stop.heading)
         return Errand(turn if actor.posture == "standing" else _task(clip, target, second, shot), (), stop)
     people = state.people(but=beat.character) + taken
-    paths = find_paths(state.world, here, (stop.x, stop.y), ways, people=people)
+    paths = find_paths(state.world, here, stop.place, ways, people=people)
     if not paths:
         _unreachable(beat, where, state, here, report)
         return None
@@ -150,26 +150,27 @@ def _fetching(
     wanted = {"target": (beat.target, beat.second), "second": (beat.second, beat.target)}[clip.needs]
     if wanted[0] is None or wanted[1] is None:
         return None
-    here = (actor.position[0], actor.position[1])
+    here = actor.position
     people = state.people(but=beat.character) + taken
-    way, heading = np.zeros((0, 2)), None
+    way, heading = np.zeros((0, 3)), None
     if _away(need, here) > ARM:
         first = approach(wanted[0], state, beat.character, here, taken)
-        ways = find_paths(state.world, here, (first.x, first.y), people=people) if first else []
+        ways = find_paths(state.world, here, first.place, people=people) if first else []
         if first is None or not ways:
             return None
-        way, heading, here = ways[0], first.heading, (first.x, first.y)
+        way, heading, here = ways[0], first.heading, first.place
     task = replace(task, fetch=way, fetch_heading=heading)
     if _away(goal, here) <= (_NEAR_ENOUGH if goal.character else ARM):
-        return Errand(task, (), Stop(*here, heading if heading is not None else actor.heading))
+        facing = heading if heading is not None else actor.heading
+        return Errand(task, (), Stop(here[0], here[1], facing, here[2]))
     stop = approach(wanted[1], state, beat.character, here, taken)
-    paths = find_paths(state.world, here, (stop.x, stop.y), 2, people=people) if stop else []
+    paths = find_paths(state.world, here, stop.place, 2, people=people) if stop else []
     if stop is None or not paths:
         return None
     return Errand(replace(task, arrive_heading=stop.heading), tuple(paths), stop)
 
 
-def _away(point: TargetPoint, here: tuple[float, float]) -> float:
+def _away(point: TargetPoint, here: tuple[float, ...]) -> float:
     """Metres on the floor to a thing, or to where a person stands."""
     at = point.gaze if point.character else point.position
     return math.hypot(at[0] - here[0], at[1] - here[1])
@@ -213,7 +214,7 @@ def _where_to(
         touched = _touches(clip, word) or (clip.needs == word)
         if not touched and not (point.character and _touches(clip, "meet")):
             continue
-        if _away(point, (actor.position[0], actor.position[1])) > (_NEAR_ENOUGH if point.character else ARM):
+        if _away(point, actor.position) > (_NEAR_ENOUGH if point.character else ARM):
             return written
     return None
 
@@ -263,12 +264,12 @@ def _listing(before: str, names: list[str]) -> str | None:
 
 
 def _unreachable(
-    beat: Beat, target: Target, state: SceneState, here: tuple[float, float], report: Report
+    beat: Beat, target: Target, state: SceneState, here: tuple[float, float, float], report: Report
 ) -> None:
     """Says what stands in the way, and what can be reached."""
     people = state.people(but=beat.character)
-    goal = target_point(target, state, (*here, 0.0)).position
-    blocking = obstacles(state.world, here, (goal[0], goal[1]))
+    goal = target_point(target, state, here).position
+    blocking = obstacles(state.world, here, goal)
     names = [state.world.objects[i].path[-1] for i in blocking if i >= 0]
     crowd = [
         name
@@ -282,10 +283,9 @@ def _unreachable(
     reach = []
     for item in state.world.objects:
         stand = next((s for s in item.spots if s.name.startswith("stand")), None)
-        if stand is not None and item.path != target.path:
-            spot = (stand.position[0], stand.position[1])
-            if reachable(state.world, here, spot, people, BODY_RADIUS):
-                reach.append(item.path[-1])
+        elsewhere = stand is not None and item.path != target.path
+        if stand is not None and elsewhere and reachable(state.world, here, stand.position, people):
+            reach.append(item.path[-1])
     report.error(
         "VDS170",
         target.span,
@@ -294,6 +294,6 @@ def _unreachable(
     )
 
 
-def disc(stop: Stop) -> tuple[float, float, float]:
+def disc(stop: Stop) -> tuple[float, float, float, float]:
     """A place somebody is about to stand at, as an obstacle."""
-    return stop.x, stop.y, PERSON_RADIUS
+    return stop.x, stop.y, PERSON_RADIUS, stop.z

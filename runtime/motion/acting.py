@@ -16,13 +16,14 @@ from .carriage import Low, Style
 from .channels import Channels
 from .contacts import Contacts, HandTracks, Layer
 from .curves import below, delayed, plateau, ramp, smooth, wander
-from .face import GazePull, Look, blinks, felt, look, mimic, speech
+from .face import GazePull, Look, blinks, eye_angles, felt, look, mimic, speech
 from .feet import ankle_positions
 from .figure import ArmPose, Figure, HandGoals
 from .gait import level_thigh, sit_clearance
 from .hands import MIRROR
 from .plan import Plan
-from .rotations import norm, turned, unwrapped, wrap
+from .rotations import norm, rot_zy, turned, unwrapped, wrap
+from .types import Touches
 
 Array = NDArray[np.float64]
 
@@ -356,6 +357,7 @@ class Performer:
         rotation = tracks.rotation(self.figure.hands)
         goals = HandGoals(tracks.position(self.figure), tracks.weight, rotation, tracks.turning)
         palms = self.figure.arms(pose, goals, self.yaw)
+        self.tracks, self.goals, self.palms = tracks, goals.position, palms
         self.goal_rotation = rotation
         c = self.channels
         weight = c.pair("fingers", "weight")
@@ -368,6 +370,21 @@ class Performer:
         self.figure.fingers(np.clip(curl, 0.0, 1.0), np.clip(point, 0, 1), thumb)
         return palms
 
+    def touches(self, frames: int) -> Touches:
+        """What hands, feet and eyes are on, over the first ``frames``."""
+        c, feet = self.channels, self.feet
+        moved = sum(np.abs(c.pair("foot", axis)) for axis in ("forward", "out", "lift"))
+        hanging = self.sitting * self._dangle() > 0.005
+        planted = (feet.air <= 0) & (moved < 0.004) & (feet.lift < 1e-4) & ~hanging
+        limbs = (planted, feet.ground, self.tracks.weight, self.goals, self.palms)
+        return Touches(*(x[:, :frames] for x in limbs), self.look.fixed[:frames], self.look.point[:frames])
+
+    def _gaze_from(self) -> tuple[Array, Array]:
+        """The head's rotation [T, 3, 3] and the point between the eyes [T, 3]."""
+        fig, bind = self.figure, self.skeleton.bind
+        eye = bind[JOINT["eye_l"]] - bind[JOINT["head"]]
+        return fig.rotation[:, JOINT["head"]], fig.point("head", np.array([eye[0], 0.0, eye[2]]))
+
     def face(self) -> None:
         """Eyes, lids, brows, mouth and jaw."""
         c, talk, feeling = self.channels, self.speech, self.feeling
@@ -375,17 +392,22 @@ class Performer:
         knit = np.clip(c.pair("brow", "knit").max(axis=0) + feeling["knit"], 0.0, 1.2)
         lids = np.maximum(np.maximum(blinks(self.t, self.rng), c["lids.close"]), feeling["lid"])
         smile = np.clip(c["mouth.smile"] + feeling["smile"], -1.1, 1.1)
+        turn, down = eye_angles(self.look, rot_zy(self.yaw, self.low.tilt), *self._gaze_from())
         self.figure.face(
-            (self.look.eye_turn + c["eyes.turn"], self.look.eye_down + c["eyes.down"]),
+            (turn + c["eyes.turn"], down + c["eyes.down"]),
             np.clip(lids, 0, 1), (up, knit), smile,
             np.clip(talk.jaw * (1.0 - 0.5 * feeling["jaw"]) + c["jaw.open"] + feeling["jaw"], -0.2, 1),
             mimic(feeling, c["mouth.smile"], talk.jaw),
         )  # fmt: skip
 
 
-def relative_gaze(eye: Array, yaw: Array, point: Array) -> tuple[Array, Array]:
-    """Turn to the left and down [T] from ``eye`` [T, 3] to ``point`` [(T,) 3], against heading ``yaw``."""
+def relative_gaze(eye: Array, yaw: Array, tilt: Array, point: Array) -> tuple[Array, Array]:
+    """Turn to the left and down [T] from ``eye`` [T, 3] to ``point`` [(T,) 3], against a trunk that faces
+    ``yaw`` and is tipped forward by ``tilt``."""
     d = point - eye
+    if tilt.any():
+        d = turned(np.swapaxes(rot_zy(yaw, tilt), -1, -2), d)
+        yaw = np.zeros_like(yaw)
     turn = wrap(np.arctan2(d[..., 1], d[..., 0]) - yaw)
     return unwrapped(turn), np.arctan2(-d[..., 2], np.hypot(d[..., 0], d[..., 1]))
 

@@ -10,29 +10,40 @@ from numpy.typing import NDArray
 from .curves import delayed, plateau, ramp, smooth, wander
 from .feelings import FEELINGS, Expression
 from .figure import Mimic
+from .rotations import turned, unit
 from .types import Talk
 
 Array = NDArray[np.float64]
 #: How far eyes, head and chest turn, radians.
-EYE_TURN, EYE_DOWN, HEAD_TURN, HEAD_NOD = 0.5, 0.4, 1.15, 0.65
+EYE_TURN, EYE_DOWN, HEAD_TURN, HEAD_NOD = 0.62, 0.52, 1.15, 0.65
 
 
 @dataclass(frozen=True, eq=False)
 class GazePull:
-    """A direction to look, relative to the body: turn, down and weight [T], and the head's share."""
+    """A direction to look, relative to the body: turn, down and weight [T], and the head's share.
+
+    point: the place in the world that is looked at [T, 3], where it is one
+    """
 
     turn: Array
     down: Array
     weight: Array
     share: float
+    point: Array | None = None
 
 
 @dataclass(frozen=True, eq=False)
 class Look:
-    """What the eyes, head and chest do: radians [T]."""
+    """What the head and chest do, radians [T], and where the eyes are to go.
 
-    eye_turn: Array
-    eye_down: Array
+    turn, down: direction for the eyes, relative to the body; point: [T, 3] what they look at in the world, by
+        the weight ``fixed`` [T]
+    """
+
+    turn: Array
+    down: Array
+    point: Array
+    fixed: Array
     head_turn: Array
     head_nod: Array
     chest_twist: Array
@@ -44,7 +55,12 @@ def look(pulls: list[GazePull], frames: int, fps: float) -> Look:
     Later pulls lie over earlier ones.
     """
     turn, down, share = np.zeros(frames), np.zeros(frames), np.full(frames, 0.6)
+    point, fixed = np.zeros((frames, 3)), np.zeros(frames)
     for pull in pulls:
+        if pull.point is not None:
+            over = pull.weight / np.maximum(pull.weight + fixed * (1.0 - pull.weight), 1e-6)
+            point = point + over[:, None] * (pull.point - point)
+        fixed = fixed * (1.0 - pull.weight) + (pull.weight if pull.point is not None else 0.0)
         turn = turn + pull.weight * (pull.turn - turn)
         down = down + pull.weight * (pull.down - down)
         share = share + pull.weight * (pull.share - share)
@@ -54,9 +70,31 @@ def look(pulls: list[GazePull], frames: int, fps: float) -> Look:
     far = np.sign(turn) * np.maximum(np.abs(turn) - 0.55, 0.0)
     chest = delayed(smooth(np.clip(0.42 * far, -0.5, 0.5), 0.16 * fps), 0.2 * fps)
     eyes = smooth(np.stack([turn, down], axis=1), 0.03 * fps)
-    return Look(
-        _soft(eyes[:, 0] - head - chest, EYE_TURN), _soft(eyes[:, 1] - nod, EYE_DOWN), head, nod, chest
-    )  # fmt: skip
+    return Look(eyes[:, 0], eyes[:, 1], point, smooth(fixed, 0.03 * fps), head, nod, chest)
+
+
+def eye_angles(look: Look, body: Array, head: Array, eye: Array) -> tuple[Array, Array]:
+    """Turn and down of the eyes in the head [T], within their limits.
+
+    body, head: rotations [T, 3, 3] of what the look is relative to and of the head
+    eye: [T, 3] between the eyes
+    """
+    flat = np.cos(look.down)
+    along = np.stack([flat * np.cos(look.turn), flat * np.sin(look.turn), -np.sin(look.down)], axis=1)
+    free = turned(np.swapaxes(head, -1, -2) @ body, along)
+    fixed = unit(turned(np.swapaxes(head, -1, -2), look.point - eye))
+    way = free + look.fixed[:, None] * (fixed - free)
+    turn = np.arctan2(way[:, 1], way[:, 0])
+    down = np.arctan2(-way[:, 2], np.hypot(way[:, 0], way[:, 1]))
+    return _limited(turn, EYE_TURN), _limited(down, EYE_DOWN)
+
+
+def _limited(x: Array, limit: float) -> Array:
+    """Exact up to four fifths of the limit, then creeping towards it."""
+    knee = 0.8 * limit
+    over = np.maximum(np.abs(x) - knee, 0.0)
+    eased = np.minimum(np.abs(x), knee) + (limit - knee) * np.tanh(over / (limit - knee))
+    return np.asarray(np.sign(x) * eased)
 
 
 def _soft(x: Array, limit: float) -> Array:

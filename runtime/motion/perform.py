@@ -62,6 +62,7 @@ def perform(
         {k: x[:frames].astype(np.float32) for k, x in scene.props.items()},
         {n: _end_state(p, scene.held_at_end(n)) for n, p in plans.items()},
         scene.end_props(),
+        {n: p.touches(frames) for n, p in scene.performers.items()},
     )
 
 

@@ -363,6 +363,24 @@ class Task:
 
 
 @dataclass(frozen=True, eq=False)
+class Touches:
+    """What one person touches and looks at, as intended; for whoever measures how well it came out.
+
+    planted: bool [2, T], left foot first: stands still on something; ground: [2, T] height of that
+    hands: [2, T], 1 while a palm is to be at its goal [2, T, 3]; palms: [2, T, 3], where it is
+    gaze: [T], 1 while the eyes are on what is looked at [T, 3]
+    """
+
+    planted: NDArray[np.bool_]
+    ground: NDArray[np.float64]
+    hands: NDArray[np.float64]
+    goals: NDArray[np.float64]
+    palms: NDArray[np.float64]
+    gaze: NDArray[np.float64]
+    looked_at: NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
 class SceneMotion:
     """Everybody over one shot.
 
@@ -370,6 +388,7 @@ class SceneMotion:
     position: per actor float64 [T, 3], floor point below the hips; heading: per actor float64 [T]
     props: by object id, float32 [T, 4, 4] world_from_object
     end_actors, end_props: the state the next shot begins with
+    touches: per actor, what is touched and looked at
     """
 
     frames: int
@@ -379,3 +398,4 @@ class SceneMotion:
     props: dict[int, NDArray[np.float32]]
     end_actors: dict[str, ActorState]
     end_props: dict[int, PropState]
+    touches: dict[str, Touches]

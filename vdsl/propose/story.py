@@ -7,7 +7,7 @@ is performed the same way.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from itertools import product
 
@@ -60,15 +60,32 @@ def tell(
     report = report if report is not None else Report()
     shot = shot if shot is not None else (line.shots[0] if line.shots else None)
     errands = _errands(state, line, filming, shot, report)
-    seed = int(generator(filming.seed, shot.id if shot else "", "performance").integers(2**31))
     proposals, end = [], state
-    for index, (variant, path) in enumerate(_ways(errands, most)):
-        motion = _perform(state, errands, filming.skeletons, (variant, path), filming.fps, seed, shot)
+    for index, (name, path, motion) in enumerate(_motions(state, errands, filming, shot, most)):
         if index == 0:
             end = replace(state, actors=motion.end_actors, props=motion.end_props)
-        name = next(iter(errands.values())).task.clip.variants[variant].name if errands else STILL
         proposals.append(_proposal(index, name, path, motion, _interest(errands, motion)))
     return Told(tuple(proposals), end)
+
+
+def motions(
+    state: SceneState, line: StoryLine, filming: Filming, report: Report, most: int = MOST
+) -> list[tuple[str, SceneMotion]]:
+    """The motions :func:`tell` makes of a line, by the names of their variants, with all the engine says."""
+    shot = line.shots[0] if line.shots else None
+    errands = _errands(state, line, filming, shot, report)
+    return [(name, motion) for name, _, motion in _motions(state, errands, filming, shot, most)]
+
+
+def _motions(
+    state: SceneState, errands: dict[str, Errand], filming: Filming, shot: Shot | None, most: int
+) -> Iterator[tuple[str, int, SceneMotion]]:
+    """Variant, path and motion of every way."""
+    seed = int(generator(filming.seed, shot.id if shot else "", "performance").integers(2**31))
+    for variant, path in _ways(errands, most):
+        motion = _perform(state, errands, filming.skeletons, (variant, path), filming.fps, seed, shot)
+        name = next(iter(errands.values())).task.clip.variants[variant].name if errands else STILL
+        yield name, path, motion
 
 
 def propose_story(
@@ -150,7 +167,8 @@ def _perform(
     duration = shot.duration if shot is not None else None
     if duration is None and not tasks:
         duration = _STILL
-    return perform(actors, tasks, state.props, fps, seed, duration)
+    feelings = dict(shot.feelings) if shot is not None else {}
+    return perform(actors, tasks, state.props, fps, seed, duration, feelings)
 
 
 def _interest(errands: Mapping[str, Errand], motion: SceneMotion) -> tuple[NDArray[np.float64], ...]:

@@ -51,6 +51,20 @@ def errand(
 
     taken: places where others of the same line are about to stand
     """
+    found = _errand(beat, clip, shot, state, skeletons, taken, report, ways)
+    return None if found is None else replace(found, task=replace(found.task, manner=beat.manner))
+
+
+def _errand(
+    beat: Beat,
+    clip: ActionClip,
+    shot: Shot | None,
+    state: SceneState,
+    skeletons: Mapping[str, Skeleton],
+    taken: Discs,
+    report: Report,
+    ways: int,
+) -> Errand | None:
     actor = state.actors[beat.character]
     target = _point(beat.target, state, actor.position, skeletons)
     second = _point(beat.second, state, actor.position, skeletons)

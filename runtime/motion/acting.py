@@ -376,8 +376,15 @@ class Performer:
         moved = sum(np.abs(c.pair("foot", axis)) for axis in ("forward", "out", "lift"))
         hanging = self.sitting * self._dangle() > 0.005
         planted = (feet.air <= 0) & (moved < 0.004) & (feet.lift < 1e-4) & ~hanging
-        limbs = (planted, feet.ground, self.tracks.weight, self.goals, self.palms)
-        return Touches(*(x[:, :frames] for x in limbs), self.look.fixed[:frames], self.look.point[:frames])
+        return Touches(
+            planted[:, :frames],
+            feet.ground[:, :frames],
+            self.tracks.weight[:, :frames],
+            self.goals[:, :frames],
+            self.palms[:, :frames],
+            self.look.fixed[:frames],
+            self.look.point[:frames],
+        )
 
     def _gaze_from(self) -> tuple[Array, Array]:
         """The head's rotation [T, 3, 3] and the point between the eyes [T, 3]."""

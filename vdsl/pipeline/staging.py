@@ -9,11 +9,13 @@ from runtime.body.spec import BodySpec
 from runtime.world import World
 
 from ..lang.definitions.cast import CastDef
+from ..lang.definitions.files import PERSON, FileCastDef
 from ..lang.definitions.set import SetDef
 from ..lang.ir import Character, Scene, StoryLine
 from ..library import Catalog
 from ..stage.assemble import StagedScene, assemble
 from ..stage.cast import body_spec
+from ..stage.models import file_person
 from ..stage.world import build_world
 
 
@@ -50,6 +52,9 @@ class Stagehand:
     def body(self, character: Character) -> Body:
         definition = self._catalog.get("cast", character.cast)
         assert isinstance(definition, CastDef), character.cast
+        if isinstance(definition, FileCastDef):
+            height = dict(character.arguments).get("height", definition.model.height or PERSON)
+            return file_person(definition.model, float(height))
         spec = body_spec(definition, dict(character.arguments))
         if spec not in self._bodies:
             self._bodies[spec] = build_body(spec)

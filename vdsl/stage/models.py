@@ -6,22 +6,24 @@ a script names, and reports what only that can tell; what is built afterwards re
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
+from runtime.body.build import Body
 from runtime.formats import limits
 from runtime.formats.boxes import Rect, column_boxes, floor_height, floors, surface_points
 from runtime.formats.errors import ModelFileError
 from runtime.formats.finish import piece_mesh
 from runtime.formats.load import load_model
 from runtime.formats.model import Fit, Piece, settled
+from runtime.formats.person import read_person
 from runtime.mesh import Mesh
 
-from ..lang.definitions.files import FileDef, FilePropDef, FileSetDef, broken_file
+from ..lang.definitions.files import PERSON, FileCastDef, FileDef, FilePropDef, FileSetDef, broken_file
 from ..lang.definitions.types import ModelFile
 from ..lang.diagnostics import Report
 from ..library import Catalog
@@ -69,11 +71,24 @@ def _build(definition: FileDef) -> None:
         file_prop(definition.model)
     elif isinstance(definition, FileSetDef):
         file_set(definition.model)
+    elif isinstance(definition, FileCastDef):
+        file_person(definition.model, definition.model.height or PERSON)
 
 
 def file_prop(model: ModelFile) -> FileProp:
     """Raises :class:`ModelFileError`. Kept as long as the file is the same."""
     return _file_prop(model, _state(model))
+
+
+def file_person(model: ModelFile, height: float) -> Body:
+    """Raises :class:`ModelFileError`. Kept as long as the file is the same."""
+    return _file_person(replace(model, height=height), _state(model))
+
+
+@lru_cache(maxsize=16)
+def _file_person(model: ModelFile, state: tuple[int, int]) -> Body:
+    height = model.height or PERSON
+    return read_person(Path(model.path), Path(model.folder), height, model.up, model.turn)
 
 
 def file_set(model: ModelFile) -> FileSet:

@@ -18,10 +18,33 @@ from .manner import PLAIN, Manner, manner_of
 from .postures import WAYS
 from .rotations import wrap
 from .route import Going, Route
-from .types import Actor, FootMove, Gaze, Grasp, Jump, Point, PropState, Reach, TargetPoint, Task, Timeline
+from .types import (
+    Actor,
+    Drive,
+    FootMove,
+    Gaze,
+    Grasp,
+    Jump,
+    Passage,
+    Point,
+    PropState,
+    Reach,
+    TargetPoint,
+    Task,
+    Timeline,
+    Track,
+)
 
 Array = NDArray[np.float64]
 
+#: Opening a door one comes to: a hand on the handle, which it lets go of before the leaf has swung away.
+PASS = Timeline(
+    tracks=(Track("fingers_near.curl", (0.0, 0.3, 0.4, 0.66, 1.0), (0.25, 0.2, 0.75, 0.7, 0.25)),),
+    reaches=(Reach("near", "target", 0.0, 0.36, 0.68, 1.0),),
+    gazes=(Gaze("target", 0.0, 0.5),),
+    drives=(Drive("target", 1.0, 0.38, 0.9),),
+)
+PASS_TIME = 1.5
 #: Taking hold of a thing that an action needs and that is not in a hand yet.
 PICK = Timeline(
     reaches=(Reach("near", "target", 0.12, 0.55, 0.68, 1.0),),
@@ -79,6 +102,7 @@ class Plan:
     homes: dict[int, Point] = field(default_factory=dict)
     windows: list[Window] = field(default_factory=list)
     events: list[Event] = field(default_factory=list)
+    opened: set[int] = field(default_factory=set)
     feelings: list[tuple[str, float, float]] = field(default_factory=list)
     end: float = 0.0
     acts: bool = False
@@ -160,8 +184,36 @@ def _fetch(
     assert task.fetch is not None
     if len(task.fetch) > 1:
         _rise(plan.route, task)
-        plan.route.travel(task.fetch, task.fetch_heading, _going(plan, task), rng)
+        _travel(plan, task, task.fetch, task.fetch_heading, _going(plan, task), rng)
     _take_needed(plan, task, props)
+
+
+def _travel(
+    plan: Plan, task: Task, path: Array, heading: float | None, going: Going, rng: np.random.Generator
+) -> None:
+    """Goes along a path [K, 2 or 3]; opens the doors that are shut on it, each before going on."""
+    rest = np.asarray(path, dtype=np.float64)
+    for door in task.passages:
+        near = np.linalg.norm(rest[:, :2] - np.array(door.place[:2]), axis=1)
+        at = int(near.argmin())
+        if near[at] > 0.3 or door.object in plan.opened:
+            continue
+        if at > 0 or np.hypot(*(plan.route.at[:2] - rest[at, :2])) > 0.1:
+            plan.route.travel(rest[: at + 1], door.heading, going, rng)
+        _open_door(plan, task, door)
+        rest = rest[at:]
+    plan.route.travel(rest, heading, going, rng)
+
+
+def _open_door(plan: Plan, task: Task, door: Passage) -> None:
+    """A hand opens the door one stands at; with both full it is pushed open."""
+    plan.opened.add(door.object)
+    target = TargetPoint(door.handle, door.handle, door.object)
+    duration = PASS_TIME / (task.speed * plan.manner.tempo)
+    timeline = PASS if len(plan.held) < 2 else Timeline(drives=PASS.drives)
+    hands = choose_hands(plan, target, plan.route.now)
+    plan.windows.append(Window(timeline, plan.route.now, duration, hands, target, None, None))
+    plan.route.wait(duration)
 
 
 def _rise(route: Route, task: Task) -> None:
@@ -187,7 +239,7 @@ def _go(plan: Plan, task: Task, going: Going, rng: np.random.Generator) -> None:
             heading = _facing(task, end)
         if clip.seat == "down" and task.target is not None and task.target.seat is not None:
             return  # the way leads on to the seat, see _sit_or_stand
-        route.travel(path, heading, going, rng)
+        _travel(plan, task, path, heading, going, rng)
     elif route.seat is None and clip.seat == "keep" and not route.low:
         turn = clip.turn * (1.0 if rng.random() < 0.5 else -1.0) if clip.turn and task.target is None else 0.0
         to = heading if heading is not None else _facing(task, route.at[:2])
@@ -225,13 +277,13 @@ def _sit_or_stand(plan: Plan, task: Task, going: Going, rng: np.random.Generator
         away = route.at[:2] - np.array(seat[:2])
         facing = float(np.arctan2(away[1], away[0]))
     stand = route.stand_point(seat, facing)
-    ways = (
-        [np.asarray(task.path, dtype=np.float64)[:, :2]] if task.path is not None and len(task.path) else []
-    )
+    ways = [np.asarray(task.path, dtype=np.float64)] if task.path is not None and len(task.path) else []
+    if ways and ways[0].shape[1] > 2:
+        stand = np.array([*stand[:2], ways[0][-1, 2]])
     if ways:  # drop the path's end where it overshoots the place before the seat
-        near = np.linalg.norm(ways[0] - stand, axis=1) > 0.35
+        near = np.linalg.norm((ways[0] - stand)[:, :2], axis=1) > 0.35
         ways[0] = ways[0][: int(np.max(np.nonzero(near)[0])) + 1] if near.any() else ways[0][:1]
-    route.travel(np.concatenate([*ways, stand[None]]), facing, going, rng)
+    _travel(plan, task, np.concatenate([*ways, stand[None]]), facing, going, rng)
     route.sit(seat, facing, SIT_TIME / task.speed)
 
 

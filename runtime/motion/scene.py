@@ -9,6 +9,7 @@ from .acting import Performer, fade, relative_gaze
 from .contacts import SIDE, Contacts, HandTracks, Held, Layer, Wield, holding_weight, reach_layer
 from .curves import plateau, wander
 from .face import GazePull
+from .hinges import followed, handle_track, openness
 from .plan import Event, Plan, Window
 from .props import Hold, track_prop
 from .rotations import wrap
@@ -42,6 +43,8 @@ class Scene:
         self.performers = {n: Performer(p, t, fps, seeded(seed, n, 2)) for n, p in plans.items()}
         self.holds = _holds(plans, props)
         self.props: dict[int, Array] = {}
+        self.open = {k: openness(p, plans.values(), k, t) for k, p in props.items() if p.hinge is not None}
+        self.parts = {k: p.hinge.matrices(self.open[k]) for k, p in props.items() if p.hinge is not None}
 
     def run(self) -> None:
         eyes = {n: p.eye_point() for n, p in self.performers.items()}
@@ -55,7 +58,10 @@ class Scene:
             palms[name] = performer.arms(Contacts(self.tracks[name]))
             performer.face()
         hands = {n: p.figure for n, p in self.performers.items()}
+        self.props.update(self.parts)
         for k, prop in self.rest.items():
+            if k in self.parts:
+                continue
             self.props[k] = track_prop(prop, self.holds.get(k, []), self.t, palms, hands, self.tracks,
                                        {n: p.goal_rotation for n, p in self.performers.items()})  # fmt: skip
 
@@ -166,6 +172,9 @@ class Scene:
         if reach.to in ("target", "second"):
             point = window.second if reach.to == "second" else window.target
             place = self._point(point, held_id, arrive)
+            if point is not None and point.object in self.parts:
+                track = handle_track(self.rest[point.object], self.parts[point.object])
+                place = followed(track, self.t, arrive, window.at(reach.leave))
             puts = held_id is not None and self._put_here(window, side)
             if puts:
                 place = self._put_at(performer.plan.name, side, held_id)
@@ -274,7 +283,9 @@ class Scene:
             last = holds[-1] if holds else None
             holder = (last.person, last.hand) if last is not None and last.end > 1e8 else None
             home = prop.stands if holder is not None else None
-            out[k] = PropState(self.props[k][-1].astype(np.float64), prop.grip, holder, home)
+            share = float(self.open[k][-1]) if k in self.open else 0.0
+            matrix = self.props[k][-1].astype(np.float64)
+            out[k] = PropState(matrix, prop.grip, holder, home, prop.hinge, share)
         return out
 
 
@@ -287,7 +298,7 @@ def _holds(plans: dict[str, Plan], props: dict[int, PropState]) -> dict[int, lis
                 holds.setdefault(thing, []).append(Hold(name, hand, -1e9, 1e9, None))
     for event in sorted((e for p in plans.values() for e in p.events), key=lambda e: e.time):
         nobody = event.kind == "pass" and event.receiver not in plans
-        if event.object not in props or nobody:
+        if event.object not in props or props[event.object].hinge is not None or nobody:
             continue
         mine = holds.setdefault(event.object, [])
         if mine:

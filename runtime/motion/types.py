@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from runtime.body.skeleton import Skeleton
+from runtime.world import Hinge
 
 Point = tuple[float, float, float]
 
@@ -88,12 +89,15 @@ class PropState:
     """A movable thing: float64 [4, 4] world_from_object, its grip in object coordinates, and who holds it.
 
     home: where it stood before it was taken, and is put back to where no other place is named
+    hinge: how it moves, for a part of something (which cannot be carried); open: how far it is open, 0..1
     """
 
     world_from_object: NDArray[np.float64]
     grip: Point
     holder: tuple[str, str | None] | None = None
     home: Point | None = None
+    hinge: Hinge | None = None
+    open: float = 0.0
 
     @property
     def stands(self) -> Point | None:
@@ -336,6 +340,16 @@ class ActionClip:
 # --- performing ---------------------------------------------------------------------------
 
 
+@dataclass(frozen=True)
+class Passage:
+    """A door opened on the way: where one stands for it, with which heading, and where its handle is."""
+
+    object: int
+    place: Point
+    heading: float
+    handle: Point
+
+
 @dataclass(frozen=True, eq=False)
 class Task:
     """What one person is asked to do.
@@ -347,6 +361,7 @@ class Task:
         where this ends); no points at all: it is taken from here, before going; None: it is taken on arrival
     fetch_heading: heading to take it with
     manner: how it is done, a word of :data:`runtime.motion.manner.MANNERS`, or ""
+    passages: doors that are shut on these ways, in their order; each lies on one of them
     """
 
     clip: ActionClip
@@ -360,6 +375,7 @@ class Task:
     fetch: NDArray[np.float64] | None = None
     fetch_heading: float | None = None
     manner: str = ""
+    passages: tuple[Passage, ...] = ()
 
 
 @dataclass(frozen=True, eq=False)

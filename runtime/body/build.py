@@ -27,6 +27,7 @@ from .skeleton import PALETTE, Skeleton
 from .spec import BodySpec
 from .surface import Patch
 from .weights import (
+    beard_weights,
     body_weights,
     brow_weights,
     face_weights,
@@ -37,7 +38,7 @@ from .weights import (
 )
 
 #: Raised with every change of shape, so that old cache files are not read.
-VERSION = 6
+VERSION = 7
 
 
 @dataclass(frozen=True, eq=False)
@@ -181,7 +182,13 @@ def _weights(figure: Figure, piece: Piece, normals: NDArray[np.float64]) -> NDAr
         return body_weights(figure, points, arms=False)
     if piece.rule == "skirt":
         return body_weights(figure, points, side_blend=0.09, normals=normals)
-    own = {"face": face_weights, "brow": brow_weights, "mouth": mouth_weights, "teeth": tooth_weights}
+    own = {
+        "face": face_weights,
+        "brow": brow_weights,
+        "mouth": mouth_weights,
+        "teeth": tooth_weights,
+        "beard": beard_weights,
+    }
     if piece.rule in own:
         return own[piece.rule](figure, points)
     return rigid(piece.rule, len(points))

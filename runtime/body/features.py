@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 from numpy.typing import NDArray
 
 from .anatomy import ARM_FRAME, Figure, arm
+from .beards import beard_pieces
 from .field import Field, Points, Values
 from .hair import hair_cover, hair_pieces
+from .hats import hat_line, hat_pieces, hides_hair
 from .head import EARS_COVERED, Head, brow_line, ear, eye_opening, face, lips, mouth, on_front, with_neck
 from .pieces import Piece, hemmed, parted, parted_all, shade
+from .sheets import sheet, tube
 from .spec import Colour
 from .surface import Focus, Patch, clip, cull, half, polygonise, simplify
 
@@ -23,7 +28,19 @@ _TEETH: Colour = (0.96, 0.94, 0.90)
 def head_pieces(f: Figure) -> list[Piece]:
     """Everything above the collar."""
     head = Head(f)
-    return [*_skin(head), *_ears(head), *_eyes(head), *_brows(head), *_glasses(head), *hair_pieces(head)]
+    pieces = [*_skin(head), *_ears(head), *_eyes(head), *_brows(head), *_glasses(head)]
+    return [*pieces, *_hair(head), *beard_pieces(head), *hat_pieces(head)]
+
+
+def _hair(head: Head) -> list[Piece]:
+    """Hair as far as the hat leaves it to be seen."""
+    if hides_hair(head):
+        return []
+    line = hat_line(head)
+    pieces = hair_pieces(head)
+    if line is None:
+        return pieces
+    return [replace(p, patch=clip(p.patch, head.field(line), keep_outside=True)) for p in pieces]
 
 
 def limb_pieces(f: Figure) -> list[Piece]:
@@ -56,6 +73,9 @@ def _skin(head: Head) -> list[Piece]:
     cover = hair_cover(head)
     if cover is not None:
         patch = cull(patch, cover, 0.012 * u)
+    under_hat = hat_line(head)
+    if under_hat is not None:
+        patch = cull(patch, head.field(under_hat), 0.05 * u)
     line = o[2] - 0.72 * u
     side, nape, back = 0.058 * f.p.height, f.level(1.04), f.joint("neck")[0] - 0.012 * f.p.height
 
@@ -92,16 +112,12 @@ def _behind(head: Head, across: Values, up: Values, depth: float) -> Patch:
     """A sheet over a grid of (y, z) at Y >= 0, ``depth`` behind the foremost skin, facing forward."""
     y, z = (g.reshape(-1) for g in np.meshgrid(across, up, indexing="ij"))
     points = on_front(face(head), y, z) - np.array([depth, 0.0, 0.0])
-    rows, columns = len(across), len(up)
-    a = (np.arange(rows - 1)[:, None] * columns + np.arange(columns - 1)).reshape(-1)
-    faces = np.concatenate(
-        [np.stack([a, a + columns, a + columns + 1], 1), np.stack([a, a + columns + 1, a + 1], 1)]
-    )
-    return Patch(head.metres(points), faces)
+    grid = head.metres(points).reshape(len(across), len(up), 3)
+    return sheet(grid, head.metres(np.zeros((1, 3)))[0])
 
 
 def _ears(head: Head) -> list[Piece]:
-    if head.figure.spec.hair in EARS_COVERED:
+    if head.figure.spec.hair in EARS_COVERED or head.figure.spec.hat == "veil":
         return []
     solid, u = head.field(ear(head)), head.unit
     low, high = head.metres(np.array([-0.2, 0.22, 0.28])), head.metres(np.array([0.12, 0.48, 0.66]))
@@ -218,38 +234,6 @@ def _shell(
     border = column.max(1) <= 1 if turn < 0 else column.min(1) >= columns - 2
     vertices = centre + radius * turned
     return Patch(vertices, faces[~border]), Patch(vertices, faces[border])
-
-
-def tube(line: Points, half_sizes: Points, up: Points, segments: int = 6) -> Patch:
-    """A closed strand around a line: [N, 2] half sizes across and along ``up`` [N, 3]."""
-    along = np.gradient(line, axis=0)
-    along /= np.linalg.norm(along, axis=1, keepdims=True)
-    across = np.cross(along, up)
-    across /= np.linalg.norm(across, axis=1, keepdims=True)
-    upright = np.cross(across, along)
-    turn = np.arange(segments) * 2 * np.pi / segments
-    ring = (
-        across[:, None] * (half_sizes[:, :1] * np.cos(turn))[..., None]
-        + upright[:, None] * (half_sizes[:, 1:] * np.sin(turn))[..., None]
-    )
-    n = len(line)
-    vertices = np.concatenate([(line[:, None] + ring).reshape(-1, 3), line[:1], line[-1:]])
-    faces = []
-    for i in range(n - 1):
-        for k in range(segments):
-            a, b = i * segments + k, i * segments + (k + 1) % segments
-            faces += [(a, b + segments, b), (a, a + segments, b + segments)]
-    for k in range(segments):
-        b = (k + 1) % segments
-        faces += [(n * segments, k, b), (n * segments + 1, (n - 1) * segments + b, (n - 1) * segments + k)]
-    return _outward(Patch(vertices, np.array(faces, np.int64)))
-
-
-def _outward(patch: Patch) -> Patch:
-    a, b, c = (patch.vertices[patch.faces[:, k]] for k in range(3))
-    middle = patch.vertices.mean(0)
-    volume = float(((a - middle) * np.cross(b - middle, c - middle)).sum())
-    return patch if volume > 0 else Patch(patch.vertices, patch.faces[:, ::-1])
 
 
 def brow_colour(f: Figure) -> Colour:

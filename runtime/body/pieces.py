@@ -13,6 +13,7 @@ from .surface import Patch, compact, mirror, rim, split
 #: Part labels: the ink line runs where they change.
 PARTS = (
     "skin", "eye", "hair", "top", "trim", "shirt", "bottom", "belt", "shoes", "sole", "glasses",
+    "hat", "brim", "badge", "plume", "visor", "neck", "over", "pocket", "pack", "cape", "gloves", "plate",
 )  # fmt: skip
 
 

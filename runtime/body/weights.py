@@ -101,6 +101,15 @@ def mouth_weights(figure: Figure, points: Points) -> NDArray[np.float64]:
     return w
 
 
+def beard_weights(figure: Figure, points: Points) -> NDArray[np.float64]:
+    """A long beard: with the jaw at the chin, resting on the chest at its end."""
+    low = ramp(-Head(figure).units(points)[:, 2], -0.05, 0.50)
+    w = np.zeros((len(points), len(PALETTE)))
+    for name, high, end in (("jaw", 0.7, 0.0), ("head", 0.3, 0.35), ("neck", 0.0, 0.25), ("chest", 0.0, 0.4)):
+        w[:, _COLUMN[name]] = high + (end - high) * low
+    return w
+
+
 def tooth_weights(figure: Figure, points: Points) -> NDArray[np.float64]:
     """Upper teeth: on the skull, a little drawn along by the jaw so that they show when it opens."""
     w = np.zeros((len(points), len(PALETTE)))

@@ -20,6 +20,8 @@ from .ir import Beat, Target
 from .scope import Scope
 
 _MOST_ACTION_WORDS = 4
+#: `pour jug into glass` and `pour glass from jug` are one: what is in the hand is the second target.
+_INTO = ("to", "in", "into", "on", "onto")
 _KIND_WORDS = {"place": "a place", "object": "a thing", "character": "someone"}
 
 FindTarget = Callable[[ast.Name], "Target | None"]
@@ -52,11 +54,15 @@ class BeatReader:
         if action is None:
             return None
         definition = self.catalog.get("action", action)
-        named = self._targets(node.words[1 + used :], action)
+        rest = node.words[1 + used :]
+        named = self._targets(rest, action)
+        link = next((w.text for w in rest[1:] if w.text in words.PREPOSITIONS), "")
         if definition is None or named is None or character is None:
             return None
         if not self._fits(node, action, definition, named):
             return None
+        if len(named) == 2 and link in _INTO and getattr(definition, "needs", "none") == "second":
+            named = [named[1], named[0]]
         first, second = (*named, None, None)[:2]
         for target in named:
             if target.kind == "character" and target.path[0] == character:

@@ -19,6 +19,7 @@ from runtime.body.skeleton import JOINT
 from runtime.raster.types import Camera, Views
 from runtime.world import World, WorldObject
 
+from ..cinema.sight import clear_lines
 from ..cinema.track import camera_axes, look_at_rotation, project
 from ..emit import lettering
 from ..lang.definitions.prop import PropDef
@@ -111,25 +112,11 @@ class Studio:
 
     def _strip(self, trial: Trial, way: StoryProposal, cell: tuple[int, int]) -> Image.Image:
         frames = np.round(np.linspace(0.04, 0.96, POSES) * (way.frames - 1)).astype(int)
-        eyes = [self._pose_eye(trial, way, int(f), cell) for f in frames]
+        azimuths = np.array([_facing_us(trial, way, int(f)) for f in frames])
+        choices = [[_pose_eye(trial, way, f, a + off, cell) for f, a in zip(frames, azimuths, strict=True)]
+                   for off in (_TWO_SIDES if len(trial.people) > 1 else _SIDES)]  # fmt: skip
+        eyes = max(choices, key=lambda eyes: _seen(trial, way, frames, eyes))
         return _row(self.stills(trial.staged, eyes, cell, way, frames.tolist()))
-
-    def _pose_eye(self, trial: Trial, way: StoryProposal, frame: int, cell: tuple[int, int]) -> Eye:
-        """Three quarters from the front, of two from the side; as near as shows everybody."""
-        people = [way.performances[name] for name in trial.people]
-        last = people[0].heading[-1]
-        points = np.concatenate([p.world_from_joint[frame][:, :3, 3] for p in people])
-        low, high = points.min(0), points.max(0)
-        if len(people) > 1:
-            a, b = (p.position[frame] for p in people)
-            azimuth = math.atan2(b[1] - a[1], b[0] - a[0]) - math.radians(78)
-        else:
-            azimuth = float(last) - math.radians(38)
-        aim = ((low[0] + high[0]) / 2, (low[1] + high[1]) / 2, max((low[2] + high[2]) / 2 + 0.04, 0.78))
-        across = np.array([-math.sin(azimuth), math.cos(azimuth)])
-        wide = float(np.ptp(points[:, :2] @ across)) + 0.55
-        tall = max(2.0, float(high[2]) + 0.42 - min(float(low[2]), 0.0))
-        return around(aim, azimuth, math.radians(82), max(tall, wide * cell[1] / cell[0]))
 
     # -- people ------------------------------------------------------------------------------
 
@@ -250,6 +237,45 @@ class Studio:
 def at_rest(act: Act) -> StoryProposal:
     """A line performed in one way."""
     return tell(act.state, act.line, act.filming, most=1).proposals[0]
+
+
+#: From where poses are drawn, off the direction a person faces at the end; of two people, off the line between
+#: them. The first from which most is seen is taken.
+_SIDES = tuple(math.radians(a) for a in (-38, 38, -72, 72, -110, 110, -150))
+_TWO_SIDES = tuple(math.radians(a) for a in (-78, 78, -50, 50))
+_SEEN_JOINTS = ("head", "chest", "hips", "hand_l", "hand_r", "shin_l", "shin_r")
+
+
+def _facing_us(trial: Trial, way: StoryProposal, frame: int) -> float:
+    people = [way.performances[name] for name in trial.people]
+    if len(people) == 1:
+        return float(people[0].heading[-1])
+    a, b = (p.position[frame] for p in people)
+    return math.atan2(b[1] - a[1], b[0] - a[0])
+
+
+def _pose_eye(trial: Trial, way: StoryProposal, frame: int, azimuth: float, cell: tuple[int, int]) -> Eye:
+    """As near as shows everybody, heads to feet."""
+    people = [way.performances[name] for name in trial.people]
+    points = np.concatenate([p.world_from_joint[frame][:, :3, 3] for p in people])
+    low, high = points.min(0), points.max(0)
+    aim = ((low[0] + high[0]) / 2, (low[1] + high[1]) / 2, max((low[2] + high[2]) / 2 + 0.04, 0.78))
+    across = np.array([-math.sin(azimuth), math.cos(azimuth)])
+    wide = float(np.ptp(points[:, :2] @ across)) + 0.55
+    tall = max(2.0, float(high[2]) + 0.42 - min(float(low[2]), 0.0))
+    return around(aim, azimuth, math.radians(82), max(tall, wide * cell[1] / cell[0]))
+
+
+def _seen(trial: Trial, way: StoryProposal, frames: NDArray[np.int64], eyes: Sequence[Eye]) -> float:
+    """Share of the actors' joints that nothing solid hides."""
+    joints = [JOINT[name] for name in _SEEN_JOINTS]
+    points = np.concatenate(
+        [way.performances[name].world_from_joint[frames][:, joints, :3, 3] for name in trial.people], axis=1
+    ).astype(np.float64)
+    camera = np.array([[eye.position for eye in eyes]])
+    world = trial.staged.world
+    hidden = np.zeros((1, len(world.walls)), bool)
+    return round(float(clear_lines(world.solids, camera, points, hidden).mean()), 1)
 
 
 def eyes_camera(eyes: Sequence[Eye], size: tuple[int, int]) -> Camera:

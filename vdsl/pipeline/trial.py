@@ -24,8 +24,9 @@ ACTOR, PARTNER = "anna", "ben"
 CAST = ("woman(top crimson)", "man(top navy)")
 #: Far more ways than any action has: every variant is wanted here.
 _EVERY_WAY = 64
-#: Half the side of the floor: things are placed from its corner.
-_MIDDLE = 6.0
+#: Where big things stand on the trial floor, with a table in its middle and without.
+_BESIDE_TABLE = ((7.9, 6.3), (4.1, 6.3), (3.4, 8.2), (8.6, 8.2))
+_AROUND = ((7.5, 7.2), (4.5, 7.2), (8.6, 5.0), (3.4, 5.0))
 
 
 class NoTrialError(Exception):
@@ -85,20 +86,24 @@ def action_script(definition: ActionDef, catalog: Catalog, cast: tuple[str, str]
         if not isinstance(prop, PropDef):
             raise NoTrialError(f"the action `{definition.name}` is tried with `{name}`, which is no prop")
         (small if prop.movable else big).append(name)
-    table = "table" in big
+    both = PARTNER in words
+    table = bool(small) or "table" in big
     big = [name for name in big if name != "table"]
     lines = []
-    if small or table:
-        lines.append("        place table = table(width 1.6m), at (7.5, 7.1)m {")
+    if table:
+        at = "(5.3, 7.0)m" if both else "(6, 6.9)m"
+        lines.append(f"        place table = table(width 1.6m), at {at} {{")
         for k, name in enumerate(small):
             along = (k - (len(small) - 1) / 2) * min(0.45, 1.3 / max(len(small), 1))
             lines.append(f"            place {name} = {name}, on top, at ({along:.2f}, -0.16)m")
         lines.append("        }")
-    beside = ((1.7, -0.9), (-1.7, 1.0), (-1.7, -0.9), (3.2, -0.9)) if lines else ((1.4, 1.0), (-1.4, 1.0),
-              (3.0, 1.0), (-3.0, 1.0))  # fmt: skip
-    for name, (x, y) in zip(big, beside, strict=False):
-        lines.append(f"        place {name} = {name}, at ({x + _MIDDLE}, {y + _MIDDLE})m")
-    both = PARTNER in words
+    for name, (x, y) in zip(big, _BESIDE_TABLE if table else _AROUND, strict=False):
+        lines.append(f"        place {name} = {name}, at ({x}, {y})m")
+    start = "(6, 6)m, facing 90deg" if table else "(6.2, 5.6)m, facing -40deg"
+    if both:
+        start = "(5.3, 6)m, facing 0deg"
+    if definition.group == "going":
+        start = "(4.2, 5)m, facing 0deg"
     return "\n".join(
         (
             'storyboard "trial"',
@@ -106,7 +111,7 @@ def action_script(definition: ActionDef, catalog: Catalog, cast: tuple[str, str]
             "    time day",
             '    area floor, at (-6, -6)m, size (12, 12)m, floor plain, floor-color "#e9e5da" {',
             *lines,
-            f"        spot start, at {'(5.3, 6)m, facing 0deg' if both else '(5.4, 5.7)m, facing -40deg'}",
+            f"        spot start, at {start}",
             "        spot other, at (6.7, 6)m, facing 180deg",
             "    }",
             "}",

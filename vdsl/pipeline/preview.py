@@ -239,8 +239,8 @@ def at_rest(act: Act) -> StoryProposal:
     return tell(act.state, act.line, act.filming, most=1).proposals[0]
 
 
-#: From where poses are drawn, off the direction a person faces at the end; of two people, off the line between
-#: them. The first from which most is seen is taken.
+#: From where poses are drawn, off the direction a person faces at the end; of two people, off the line
+#: between them. The first from which most is seen is taken.
 _SIDES = tuple(math.radians(a) for a in (-38, 38, -72, 72, -110, 110, -150))
 _TWO_SIDES = tuple(math.radians(a) for a in (-78, 78, -50, 50))
 _SEEN_JOINTS = ("head", "chest", "hips", "hand_l", "hand_r", "shin_l", "shin_r")
@@ -275,7 +275,7 @@ def _seen(trial: Trial, way: StoryProposal, frames: NDArray[np.int64], eyes: Seq
     camera = np.array([[eye.position for eye in eyes]])
     world = trial.staged.world
     hidden = np.zeros((1, len(world.walls)), bool)
-    return round(float(clear_lines(world.solids, camera, points, hidden).mean()), 1)
+    return round(float(clear_lines(world.solids, camera, points[None], hidden).mean()), 1)
 
 
 def eyes_camera(eyes: Sequence[Eye], size: tuple[int, int]) -> Camera:

@@ -270,12 +270,13 @@ def _seen(trial: Trial, way: StoryProposal, frames: NDArray[np.int64], eyes: Seq
     """Share of the actors' joints that nothing solid hides."""
     joints = [JOINT[name] for name in _SEEN_JOINTS]
     points = np.concatenate(
-        [way.performances[name].world_from_joint[frames][:, joints, :3, 3] for name in trial.people], axis=1
+        [way.performances[name].world_from_joint[frames][..., :3, 3][:, joints] for name in trial.people],
+        axis=1,
     ).astype(np.float64)
     camera = np.array([[eye.position for eye in eyes]])
     world = trial.staged.world
     hidden = np.zeros((1, len(world.walls)), bool)
-    return round(float(clear_lines(world.solids, camera, points[None], hidden).mean()), 1)
+    return round(float(clear_lines(world.solids, camera, points, hidden).mean()), 1)
 
 
 def eyes_camera(eyes: Sequence[Eye], size: tuple[int, int]) -> Camera:

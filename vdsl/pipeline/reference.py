@@ -44,7 +44,8 @@ def _of(catalog: Catalog, kind: str, row: type[Item]) -> list[Item]:
 def _sets(found: Sequence[SetRow]) -> str:
     intro = (
         f"{len(found)} sets. A scene takes one whole, or one of its places: `scene kitchen = "
-        "apartment.kitchen`; `at dawn`, `day`, `dusk` or `night` sets the hour. How sets are written: [sets.md](../sets.md)."
+        "apartment.kitchen`; `at dawn`, `day`, `dusk` or `night` sets the hour. How sets are "
+        "written: [sets.md](../sets.md)."
     )
     parts = [_HEAD.format(title="Sets of the library", intro=intro)]
     for row in found:
@@ -98,8 +99,8 @@ def _cast(found: Sequence[CastRow]) -> str:
 def _actions(found: Sequence[ActionRow]) -> str:
     intro = (
         f"{len(found)} actions in {sum(len(row.variants) for row in found)} variants. Every variant is "
-        "proposed; a word for the manner (`briskly`, `sadly`, `drunk` …) goes with any. How actions are written: "
-        "[actions.md](../actions.md)."
+        "proposed; a word for the manner (`briskly`, `sadly`, `drunk` …) goes with any. How actions are "
+        "written: [actions.md](../actions.md)."
     )
     parts = [_HEAD.format(title="Actions of the library", intro=intro)]
     for group in GROUPS:

@@ -313,14 +313,18 @@ class Performer:
                 layers.append(Layer(k, self.low.palms * free[k], place, np.zeros(3), (0.0, 0.0, 1.5)))
         return layers
 
+    def stand(self) -> None:
+        """Poses the torso as it is before hands ask anything of it."""
+        self.torso(*(np.zeros(self.frames) for _ in range(4)))
+
     def reach_body(self, tracks: HandTracks) -> None:
-        """Poses the torso so that hands can get where they are to go: leans, crouches, then twists."""
+        """Poses the torso so that hands can get where they are to go: leans, crouches, then twists; after
+        :meth:`stand`."""
         lean, twist, drop, forward = (np.zeros(self.frames) for _ in range(4))
-        self.torso(lean, twist, drop, forward)
         if not tracks.reaching:
             return
         down_to = tracks.position(self.figure)[..., 2] - self.ground
-        crouch = np.clip((0.40 - down_to / self.height) / 0.2, 0.0, 0.85) * tracks.weight
+        crouch = np.clip((0.40 - down_to / self.height) / 0.2, 0.0, 0.85) * tracks.pull
         crouch = smooth(crouch.max(axis=0), 0.1 * self.fps) * (1 - self.sitting) * (1 - self.low.share)
         for _ in range(3):
             gap = self._shortage(tracks)
@@ -348,7 +352,7 @@ class Performer:
         rotation = tracks.rotation(self.figure.hands)
         wrist = tracks.position(self.figure) - turned(rotation, self.figure.hands.offset)
         d = norm(wrist - self.figure.shoulders())
-        return np.asarray(np.maximum(d - 0.925 * self.figure.arm_length, 0.0) * tracks.weight)
+        return np.asarray(np.maximum(d - 0.925 * self.figure.arm_length, 0.0) * tracks.pull)
 
     def arms(self, contacts: Contacts) -> Array:
         """Poses arms and hands; returns the palms [2, T, 3]."""

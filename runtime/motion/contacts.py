@@ -13,6 +13,7 @@ from .channels import SIDED, Channels
 from .curves import plateau, ramp
 from .figure import Figure
 from .hands import MIRROR, Hands
+from .partner import LIE, partner_place
 from .rotations import blend, dot, rot_y, rot_z, rot_zyx, turned, unit, wrap
 from .types import Reach
 
@@ -136,6 +137,7 @@ class Layer:
 
     led: the thing of which a part, not the palm, is to be there: its ``rim``, ``spout``, ``foot`` or
         ``point``; with the place ``held``: the thing in the other hand
+    shake: metres up [T]; other: whose body the place is on, and whether the two face each other
     """
 
     hand: int
@@ -144,6 +146,8 @@ class Layer:
     offset: Array
     angles: tuple[float, float, float]
     led: tuple[Held, str] | None = None
+    shake: Array | None = None
+    other: tuple[Figure, bool] | None = None
 
     @property
     def place_of(self) -> str:
@@ -175,8 +179,8 @@ class Wield:
 class HandTracks:
     """All layers of one person, composed. Arrays are [2, T], left first.
 
-    weight: how far the palm is drawn to its place; turning: how far its orientation is
-    inward, pitch, tilt: that orientation; carry: a thing is in the hand; grip: fingers closed
+    weight: how far the palm is drawn to its place, pull: to one the body leans for; turning: how far its
+    orientation is; inward, pitch, tilt: that orientation; carry: a thing is in the hand; grip: fingers closed
     """
 
     def __init__(
@@ -192,7 +196,7 @@ class HandTracks:
         shape = carry.shape
         self.t, self.yaw, self.carry, self.layers, self.skeleton = t, yaw, carry, layers, skeleton
         self.wield = wield
-        self.weight = np.zeros(shape)
+        self.weight, self.pull = np.zeros(shape), np.zeros(shape)
         self.turning = carry.copy()
         self.inward = np.full(shape, 0.55)
         self.pitch = np.zeros(shape)
@@ -201,6 +205,8 @@ class HandTracks:
         for layer in layers:
             k, w = layer.hand, layer.weight
             self.weight[k] = w + self.weight[k] * (1 - w)
+            # places on the own body go with it: leaning would only chase them
+            self.pull[k] = w * (layer.place_of in ("", "floor")) + self.pull[k] * (1 - w)
             total = w + self.turning[k] * (1 - w)
             share = w / np.maximum(total, 1e-6)
             for track, angle in zip((self.inward, self.pitch, roll), layer.angles, strict=True):
@@ -216,7 +222,7 @@ class HandTracks:
         self.tilt = roll * (1 - carry) + tilt[0]
         self.lifted = lifted - tilt[1]  # how far what is held points up
         self.pitch = self.pitch - tilt[1]
-        self.reaching = any(not isinstance(x.place, str) for x in layers)
+        self.reaching = bool(self.pull.any())
 
     def position(self, figure: Figure) -> Array:
         """Palms' places [2, T, 3] for the torso as it is posed now."""
@@ -229,8 +235,7 @@ class HandTracks:
             if layer.place_of == "held" and layer.led is not None:
                 at = out[1 - k] + self._on_held(1 - k, layer.led[0], layer.offset)
             else:
-                place = layer.place
-                at = body_place(figure, place, k, self.yaw) if isinstance(place, str) else place
+                at = _layer_place(layer, figure, self.yaw)
                 ahead, outward, up = layer.offset
                 left = outward * (1.0 - 2.0 * k)
                 at = at + np.stack(
@@ -239,6 +244,8 @@ class HandTracks:
                 if layer.led is not None:
                     at = at - self._to_part(k, *layer.led)
             at = at + shift[k]
+            if layer.shake is not None:
+                at = at + layer.shake[:, None] * np.array([0.0, 0.0, 1.0])
             over = w + total[k] * (1 - w)
             share = w / np.maximum(over, 1e-6)
             out[k] += share[:, None] * (at - out[k])
@@ -299,6 +306,15 @@ class HandTracks:
         return blend(natural, self._wielded()[k] @ held.ahead, weight) if weight.any() else natural
 
 
+def _layer_place(layer: Layer, figure: Figure, yaw: Array) -> Array:
+    """[T, 3]: a layer's place, before it is shifted."""
+    if not isinstance(layer.place, str):
+        return layer.place
+    if layer.other is not None:
+        return partner_place(layer.other[0], layer.place.partition(".")[2], layer.hand, layer.other[1])
+    return body_place(figure, layer.place, layer.hand, yaw)
+
+
 @dataclass(frozen=True, eq=False)
 class Contacts:
     """What :meth:`Performer.arms` needs of contacts."""
@@ -316,11 +332,13 @@ def reach_layer(
     led: tuple[Held, str] | None,
     extra: Array,
     fingers: float | None = None,
+    other: tuple[Figure, bool] | None = None,
 ) -> Layer:
     """A reach as a layer.
 
     window: start and duration in seconds; start: (root xy, heading, skeleton) on arrival
     fingers: heading of the fingers that suits a handle, taken where a hand can do it
+    other: whose body the place is on, if it is somebody else's
     """
     begin, duration = window
     times = [begin + x * duration for x in (reach.start, reach.arrive, reach.leave, reach.end)]
@@ -328,14 +346,15 @@ def reach_layer(
     weight = ramp(t, times[0], times[1]) if stays else plateau(t, *times)
     tilt = _PALM.get(reach.palm, 0.0)
     if isinstance(place, str):
-        inward, pitch, over = _LIE[place]
+        inward, pitch, over = LIE[place.partition(".")[2]] if other is not None else _LIE[place]
         angles = (inward, pitch, over + tilt)
     else:
         xy, heading, skeleton = start
         m = 1.0 - 2.0 * hand
-        place = within_reach(place, xy, heading, skeleton)
+        there = int(np.clip(np.searchsorted(t, times[1]), 0, len(t) - 1))
+        place = within_reach(place, xy, heading, skeleton, there)
         shoulder = skeleton.bind[JOINT["upperarm_l"]]
-        at = place[len(place) // 2]
+        at = place[there]
         side = xy + m * shoulder[1] * np.array([-np.sin(heading), np.cos(heading)])
         bearing = float(wrap(np.arctan2(at[1] - side[1], at[0] - side[0]) - heading))
         if fingers is not None and -0.7 < -m * wrap(fingers - heading) < 1.3:
@@ -344,19 +363,23 @@ def reach_layer(
         angles = (float(np.clip(-m * bearing, -0.7, 1.3)), -0.9 * float(low), tilt)
     if reach.palm == "ahead":
         angles = _FLAT
-    return Layer(hand, weight, place, np.array(reach.offset) + extra, angles, led)
+    shake = None
+    if reach.shake:
+        u = np.clip((t - times[1]) / max(times[2] - times[1], 1e-6), 0.0, 1.0)
+        shake = reach.shake * np.sin(2.0 * np.pi * reach.times * u)
+    return Layer(hand, weight, place, np.array(reach.offset) + extra, angles, led, shake, other)
 
 
-def within_reach(place: Array, xy: Array, heading: float, skeleton: Skeleton) -> Array:
-    """The place [T, 3], or where it is behind or far off, the point one would reach to instead."""
-    at = place[len(place) // 2, :2] - xy
+def within_reach(place: Array, xy: Array, heading: float, skeleton: Skeleton, there: int) -> Array:
+    """The place [T, 3], or where it is out of reach in frame ``there``, the point one would reach to instead."""
+    at = place[there, :2] - xy
     distance, bearing = float(np.hypot(*at)), float(wrap(np.arctan2(at[1], at[0]) - heading))
     far = min(distance, 0.72 * skeleton.height)
     turn = float(np.clip(bearing, -1.75, 1.75))
     if distance - far < 1e-6 and abs(bearing - turn) < 1e-6:
         return place
     angle = heading + turn
-    shift = xy + far * np.array([np.cos(angle), np.sin(angle)]) - place[len(place) // 2, :2]
+    shift = xy + far * np.array([np.cos(angle), np.sin(angle)]) - place[there, :2]
     return place + np.array([shift[0], shift[1], 0.0])
 
 

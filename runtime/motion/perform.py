@@ -80,7 +80,7 @@ def _plan(
         if window is None or window.partner is None or window.partner not in plans or window.partner == name:
             continue
         if any((partner.tracks, partner.reaches, partner.gazes, partner.beats, partner.talks)):
-            add_partner(plans[window.partner], partner, window, giver)
+            add_partner(plans[window.partner], partner, window, giver, task.clip.apart > 0)
     return plans
 
 

@@ -22,6 +22,7 @@ from .types import (
     Actor,
     Drive,
     FootMove,
+    GaitStyle,
     Gaze,
     Grasp,
     Jump,
@@ -53,6 +54,8 @@ PICK = Timeline(
 )
 PICK_TIME = 1.25
 STAND_TIME = 1.25
+#: Two people who stood closer than this for an action step apart again, metres.
+_ROOM = 0.62
 SIT_TIME = 1.3
 
 
@@ -138,6 +141,7 @@ def plan_task(
     going = _going(plan, task)
     _go(plan, task, going, rng)
     _sit_or_stand(plan, task, going, rng)
+    partner = _close_in(plan, task, going)
     if clip.posture:
         route.settle(clip.posture, task.speed, clip.posture_time / task.speed)
     _take_needed(plan, task, props)
@@ -151,9 +155,33 @@ def plan_task(
     if duration > 0:
         window = _play(plan, variant.timeline, start, duration, task)
         route.now = max(route.now, window.start + duration)
+    if partner is not None and clip.apart < _ROOM and not clip.hold:
+        away = route.at[:2] - partner
+        back = partner + away / max(float(np.hypot(*away)), 1e-6) * (_ROOM + 0.08)
+        route.travel(back[None], route.heading, replace(going, gait=WALK, style=GaitStyle(facing="back")))
     if clip.rises:
         route.settle("standing", task.speed)
     plan.end = route.now
+
+
+def _close_in(plan: Plan, task: Task, going: Going) -> Array | None:
+    """Steps up to somebody, or back, to be as far apart as the clip wants; where they are, if it does."""
+    route, apart = plan.route, task.clip.apart
+    person = next((p for p in (task.second, task.target) if p is not None and p.character), None)
+    if not apart or person is None or route.low or route.seat is not None:
+        return None
+    partner = np.array(person.gaze[:2])
+    away = route.at[:2] - partner
+    far = max(float(np.hypot(*away)), 1e-6)
+    facing = float(np.arctan2(-away[1], -away[0]))
+    if abs(far - apart) > 0.05:
+        there = partner + away / far * apart
+        style = GaitStyle(facing="back") if far < apart else GaitStyle()
+        going = replace(going, gait=WALK, wobble=0.0, style=style)
+        route.travel(there[None], facing, going)
+    elif abs(wrap(facing - route.heading)) > 0.2:
+        route.travel(None, facing, Going(speed=task.speed))
+    return partner
 
 
 def _going(plan: Plan, task: Task, gait: str = "") -> Going:
@@ -424,8 +452,9 @@ def other(hand: str) -> str:
     return "r" if hand == "l" else "l"
 
 
-def add_partner(plan: Plan, timeline: Timeline, window: Window, giver: Plan) -> None:
-    """The other person's part of an action, in step with ``window`` of the one who acts."""
+def add_partner(plan: Plan, timeline: Timeline, window: Window, giver: Plan, close: bool) -> None:
+    """The other person's part of an action, in step with ``window`` of the one who acts; close: nearer than
+    for talking, so that they have to face each other."""
     head = float(giver.actor.skeleton.bind[JOINT["head"]][2])
     xy, _, _ = giver.route.root(np.array([window.at(0.5)]))
     x, y = float(xy[0, 0]), float(xy[0, 1])
@@ -433,7 +462,7 @@ def add_partner(plan: Plan, timeline: Timeline, window: Window, giver: Plan) -> 
     route = plan.route
     if route.seat is None and not route.low:
         to = float(np.arctan2(*(xy[0] - route.at[:2])[::-1]))
-        if abs(wrap(to - route.heading)) > 0.9:
+        if abs(wrap(to - route.heading)) > (0.3 if close else 0.9):
             route.now = max(0.0, window.start - 0.6)
             route.travel(None, to)
     hands = choose_hands(plan, point, window.start)

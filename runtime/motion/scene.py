@@ -9,6 +9,7 @@ from .acting import Performer, fade, relative_gaze
 from .contacts import SIDE, Contacts, HandTracks, Held, Layer, Wield, holding_weight, reach_layer
 from .curves import plateau, wander
 from .face import GazePull
+from .figure import Figure
 from .hinges import followed, handle_track, openness
 from .plan import Event, Plan, Window
 from .props import Hold, track_prop
@@ -54,7 +55,10 @@ class Scene:
             performer.talk()
             performer.gaze(self._pulls(name, eyes))
             self.tracks[name] = self._tracks(name)
+            performer.stand()
+        for name, performer in self.performers.items():
             performer.reach_body(self.tracks[name])
+        for name, performer in self._arms_in_order():
             palms[name] = performer.arms(Contacts(self.tracks[name]))
             performer.face()
         hands = {n: p.figure for n, p in self.performers.items()}
@@ -64,6 +68,13 @@ class Scene:
                 continue
             self.props[k] = track_prop(prop, self.holds.get(k, []), self.t, palms, hands, self.tracks,
                                        {n: p.goal_rotation for n, p in self.performers.items()})  # fmt: skip
+
+    def _arms_in_order(self) -> list[tuple[str, Performer]]:
+        """Who takes the other by the hand comes after them."""
+        follows = {
+            n: any(x.place_of == "partner.hand" for x in tracks.layers) for n, tracks in self.tracks.items()
+        }
+        return sorted(self.performers.items(), key=lambda item: follows[item[0]])
 
     # -- gaze ------------------------------------------------------------------------------
 
@@ -163,6 +174,7 @@ class Scene:
         held = self._held(performer.plan.name, side, arrive + 1e-3)
         extra = np.zeros(3)
         fingers = None
+        other: tuple[Figure, bool] | None = None
         led: tuple[Held, str] | None = None
         tipped = held is not None and any(
             window.hands[x.hand] == side and x.start < reach.end and x.end > reach.start
@@ -185,8 +197,11 @@ class Scene:
                 there = self.rest[point.object]
                 thing = Held(arrive, there.world_from_object[:3, :3], np.asarray(there.grip))
                 fingers = thing.axis_yaw if thing.handle else None
-        elif reach.to == "meet":
-            place = self._meet(performer, window, arrive)
+        elif reach.to in ("meet", "clasp"):
+            place = self._meet(performer, window, arrive, clasped=reach.to == "clasp")
+        elif reach.to.startswith("partner."):
+            other = self._other(performer, window, arrive)
+            place = reach.to if other is not None else None
         else:
             place = reach.to
             if held is not None and tipped:
@@ -195,15 +210,15 @@ class Scene:
         if reach.lead == "point" and held is not None:
             led = (held, "point")
         if reach.to == "held":
-            other = self._held(performer.plan.name, "lr"[1 - k], arrive + 1e-3)
-            led, place = (None, None) if other is None else ((other, "along"), place)
-            extra[0 if other is not None and other.handle else 2] += reach.along
+            beside = self._held(performer.plan.name, "lr"[1 - k], arrive + 1e-3)
+            led, place = (None, None) if beside is None else ((beside, "along"), place)
+            extra[0 if beside is not None and beside.handle else 2] += reach.along
         if place is None:
             return None
         xy, heading, _ = performer.plan.route.root(np.array([arrive]))
         return reach_layer(reach, k, (window.start, window.duration), self.t, place,
                            (xy[0], float(heading[0]), performer.skeleton), led,
-                           extra, fingers)  # fmt: skip
+                           extra, fingers, other)  # fmt: skip
 
     def _put_here(self, window: Window, side: str) -> bool:
         return any(g.kind == "put" and window.hands[g.hand] == side for g in window.timeline.grasps)
@@ -240,7 +255,16 @@ class Scene:
                 matrix[:3, 3] = hold.place
         return matrix
 
-    def _meet(self, performer: Performer, window: Window, time: float) -> Array | None:
+    def _other(self, performer: Performer, window: Window, time: float) -> tuple[Figure, bool] | None:
+        """The other person's figure, and whether the two face each other."""
+        other = self.performers.get(window.partner or "")
+        if other is None:
+            return None
+        i = min(int(time * self.fps), len(self.t) - 1)
+        return other.figure, bool(np.cos(other.yaw[i] - performer.yaw[i]) < 0)
+
+    def _meet(self, performer: Performer, window: Window, time: float, clasped: bool = False) -> Array | None:
+        """Where hands meet between two people; where they clasp each other it goes along with both."""
         other = self.performers.get(window.partner or "")
         if other is None:
             return None
@@ -249,7 +273,11 @@ class Scene:
         gap = theirs - mine
         middle = 0.5 * (mine + theirs) - 0.045 * gap / max(float(np.linalg.norm(gap)), 1e-6)
         low = [p.eye_point()[i, 2] - 0.30 * p.height for p in (performer, other)]
-        return np.broadcast_to(np.array([*middle, 0.5 * sum(low)]), (len(self.t), 3))
+        up = 0.5 * sum(low)
+        if clasped:
+            between = 0.5 * (performer.root + other.root)
+            return np.concatenate([between, np.full((len(self.t), 1), up)], axis=1)
+        return np.broadcast_to(np.array([*middle, up]), (len(self.t), 3))
 
     def _held(self, name: str, side: str, time: float) -> Held | None:
         """The thing in a hand just before ``time``, as it was when that hand took it."""

@@ -35,7 +35,18 @@ REACH_PLACES = (
     *(f"partner.{p}" for p in PARTNER_PLACES),
 )
 #: How a body may be between two shots, and the ones it may be left in besides.
-POSTURES = ("standing", "sitting", "kneeling", "crouching", "lying", "floor", "one-knee", "prone", "fours")
+POSTURES = (
+    "standing",
+    "sitting",
+    "kneeling",
+    "crouching",
+    "lying",
+    "floor",
+    "one-knee",
+    "prone",
+    "fours",
+    "plank",
+)
 #: Where eyes may rest: ``partner`` is the other person of the action, ``held`` the thing in the hand.
 GAZE_PLACES = ("target", "second", "partner", "held", "ahead", "down", "up", "aside", "around")
 #: Which hand an entry means; resolved when the action is performed.
@@ -313,7 +324,7 @@ class ActionClip:
     feeling: what shows on the face, a word of :data:`runtime.motion.feelings.FEELINGS`, or ""
     posture: one of :data:`POSTURES` taken before the clip's own part, "" to stay as one is; posture_time:
         seconds it takes (0: as long as it naturally does); rises: stands up again afterwards
-    apart: metres between the two people of the action, 0 for talking distance
+    apart: metres between the two people of the action, 0 for talking distance; hold: the last pose stays
     needs_hand: ``left`` or ``right`` where what it needs has to be in that hand, "" for either
     """
 
@@ -331,6 +342,7 @@ class ActionClip:
     rises: bool = False
     apart: float = 0.0
     needs_hand: str = ""
+    hold: bool = False
 
     def variant(self, name: str) -> Variant:
         """The variant of that name, or the first."""

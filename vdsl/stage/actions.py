@@ -53,6 +53,7 @@ def build_clip(action: ActionDef) -> ActionClip:
         action.rises,
         action.apart,
         action.needs_hand,
+        any(v.part.hold for v in action.variants),
     )
 
 

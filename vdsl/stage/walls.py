@@ -202,11 +202,15 @@ def wall_pieces(stretch: Stretch, cuts: list[Cut]) -> list[tuple[float, float, f
 
 
 def wall_mesh(
-    stretch: Stretch, cuts: list[Cut], colors: tuple[Colour, Colour], parts: tuple[int, int, int]
+    stretch: Stretch,
+    cuts: list[Cut],
+    colors: tuple[Colour, Colour],
+    parts: tuple[int, int, int],
+    materials: tuple[str, str] = ("plaster", "plaster"),
 ) -> Mesh:
     """The wall's two faces, its cut edges and its top.
 
-    colors, parts: of the face on the lower and the upper side; the third part is that of the edges
+    colors, parts, materials: of the face on the lower and the upper side; the third part is that of the edges
     """
     half = WALL_THICKNESS / 2
     meshes = []
@@ -214,7 +218,10 @@ def wall_mesh(
         for side in (0, 1):
             across = stretch.across + (half if side else -half)
             corners = [(low, across, bottom), (high, across, bottom), (high, across, top), (low, across, top)]
-            meshes.append(_quad(stretch.axis, corners, (0, 1 if side else -1, 0), colors[side], parts[side]))
+            facing = (0, 1 if side else -1, 0)
+            meshes.append(
+                _quad(stretch.axis, corners, facing, colors[side], parts[side], material=materials[side])
+            )
         a, b = stretch.across - half, stretch.across + half
         edges = [([(low, a, top), (high, a, top), (high, b, top), (low, b, top)], (0, 0, 1))]
         if bottom > stretch.base:
@@ -275,6 +282,7 @@ def _quad(
     color: Colour,
     part: int,
     shading: tuple[int, int, int] | None = None,
+    material: str = "plain",
 ) -> Mesh:
     """Four corners given as (along, across, up), facing ``normal`` in the same terms."""
     points = np.array(corners, np.float64)
@@ -284,5 +292,4 @@ def _quad(
     order: NDArray[np.int64] = np.array([[0, 1, 2], [0, 2, 3]])
     if np.cross(points[1] - points[0], points[2] - points[0]) @ facing < 0:
         order = order[:, ::-1]
-    material = "plaster" if abs(normal[1]) == 1 else "plain"
     return painted(points, order, np.tile(lit, (4, 1)), color, material, part)

@@ -66,6 +66,8 @@ from .walls import (
 Matrix = NDArray[np.float64]
 #: A prop put against a wall stands off it by this much, so that it does not sink into the skirting.
 OFF_WALL = 0.016
+#: A board runs along the foot of walls of these materials.
+SKIRTED = ("plain", "plaster", "wood")
 #: The earth around an outdoor set reaches this far beyond it, metres.
 GROUND_REACH = 22.0
 
@@ -212,7 +214,7 @@ class _Builder:
         self.objects.append(WorldObject(owner, (room.name,), room.kind, spots, low, high, matrix))
         holes = wells(self.definition, z, z)
         self._add(floor_mesh(room, self._parts(), holes), owner, -1)
-        if room.kind == "room":
+        if not room.open:
             above = wells(self.definition, z + h, z + h + SLAB)
             self._add(ceiling_mesh(room, self._parts(), above), owner, ONE_SIDED)
         self._floor(z, without((x0, y0, x1, y1), holes))
@@ -274,12 +276,14 @@ class _Builder:
         line = (stretch.axis, round(stretch.across, 3))
         faces = [self._face_part((*line, side, -1 if r is None else r)) for side, r in enumerate(sides)]
         edge = self._face_part((*line, 2, -1))
-        mesh = wall_mesh(stretch, cuts, (colors[0], colors[1]), (faces[0], faces[1], edge))
+        kinds = tuple("plaster" if i is None else self.definition.rooms[i].walls for i in sides)
+        parts = (faces[0], faces[1], edge)
+        mesh = wall_mesh(stretch, cuts, (colors[0], colors[1]), parts, (kinds[0], kinds[1]))
         self._add(mesh, owners[0], index)
         if len(owners) == 2:  # each face belongs to the room it looks into
             self.mesh_object[-1][mesh.parts == faces[1]] = owners[1]
         for side, room in enumerate(sides):
-            if room is None:
+            if room is None or kinds[side] not in SKIRTED:
                 continue
             r, i = self.definition.rooms[room], stretch.axis
             inset = WALL_THICKNESS / 2
@@ -438,14 +442,14 @@ class _Builder:
             self.solids.append(_Solid(tuple(centre), tuple(half), yaw, wall, owner))
 
     def _ground(self) -> None:
-        """Earth all around, a little lower, so that the set does not end in the air."""
+        """Earth all around, lower than the floors, so that the set does not end in the air."""
         rects = [rect for floors in self.floors.values() for rect in floors]
         if not rects:
             return
         box = np.array(rects)
         (x0, y0), (x1, y1) = box[:, :2].min(0) - GROUND_REACH, box[:, 2:].max(0) + GROUND_REACH
         gx, gy = np.meshgrid(np.linspace(x0, x1, 9), np.linspace(y0, y1, 9), indexing="ij")
-        vertices = np.stack([gx.ravel(), gy.ravel(), np.full(gx.size, -0.06)], 1)
+        vertices = np.stack([gx.ravel(), gy.ravel(), np.full(gx.size, -self.definition.deep)], 1)
         i, j = np.meshgrid(np.arange(8), np.arange(8), indexing="ij")
         a = (i * 9 + j).ravel()
         quads = np.stack([a, a + 9, a + 10, a + 1], 1)

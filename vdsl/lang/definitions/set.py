@@ -74,6 +74,7 @@ class Room:
     """A room (with walls) or an area (outdoors, without).
 
     at: south-west corner and height of the floor; size: x, y, height
+    walls: material of its walls; open: without a ceiling, under the sky
     """
 
     name: str
@@ -83,6 +84,8 @@ class Room:
     floor: str
     floor_color: Colour
     wall_color: Colour
+    walls: str
+    open: bool
     openings: tuple[Opening, ...]
     placed: tuple[Placed, ...]
     spots: tuple[PropSpot, ...]
@@ -95,7 +98,7 @@ class Room:
 class SetDef(DefinitionBase):
     """A set as defined. ``root`` is its tree of names; ``light``: one of :data:`LIGHTS`; ``facade``
     colours walls outside; ``ground`` and ``earth`` are colour and material of the land around an
-    outdoor set; ``flights``: its stairs, those of rooms aside."""
+    outdoor set, ``deep`` metres below its floors; ``flights``: its stairs, those of rooms aside."""
 
     root: SetNode
     outdoor: bool
@@ -105,6 +108,7 @@ class SetDef(DefinitionBase):
     facade: Colour
     ground: Colour
     earth: str
+    deep: float
     flights: tuple[Flight, ...] = ()
 
 
@@ -114,7 +118,7 @@ def read_set(definition: ast.Definition, report: Report) -> SetDef | None:
         report.error("VDS110", definition.parameters[0].span, label="a set has no parameters")
     time, light, rooms = "day", LIGHTS[0], []
     flights: list[Flight] = []
-    facade, ground, earth = (0.89, 0.86, 0.8), (0.77, 0.8, 0.7), "grass"
+    facade, ground, earth, deep = (0.89, 0.86, 0.8), (0.77, 0.8, 0.7), "grass", 0.06
     for entry, env in unrolled(definition.body, {}, report):
         reader = Reader(entry, env, report)
         if reader.head == "time":
@@ -126,7 +130,8 @@ def read_set(definition: ast.Definition, report: Report) -> SetDef | None:
         elif reader.head in ("facade", "ground"):
             got = checked_colour(reader.value_word(0), entry.span, report)
             facade, ground = (got, ground) if reader.head == "facade" else (facade, got)
-            earth = reader.word("material", earth, MATERIALS) if reader.head == "ground" else earth
+            if reader.head == "ground":
+                earth, deep = reader.word("material", earth, MATERIALS), reader.length("deep", deep)
             reader.done()
         elif reader.head in ("room", "area"):
             room = _room(reader)
@@ -148,9 +153,9 @@ def read_set(definition: ast.Definition, report: Report) -> SetDef | None:
     name = definition.name.text
     nodes = (*(_room_node(r) for r in rooms), *map(flight_node, outside))
     root = SetNode(name, "set", None, (), nodes, definition.span)
-    outdoor = all(r.kind == "area" for r in rooms)
-    hues = (facade, ground, earth)
-    return SetDef(name, (), definition.span, root, outdoor, time, light, tuple(rooms), *hues, outside)
+    outdoor = all(r.open for r in rooms)
+    land = (facade, ground, earth, deep)
+    return SetDef(name, (), definition.span, root, outdoor, time, light, tuple(rooms), *land, outside)
 
 
 def _settled(flights: tuple[Flight, ...], floors: dict[str, float], report: Report) -> tuple[Flight, ...]:
@@ -170,6 +175,8 @@ def _room(reader: Reader) -> Room | None:
     floor = reader.word("floor", default_floor, MATERIALS)
     floor_color = checked_colour(reader.colour("floor-color", default_color), entry.span, report)
     wall_color = checked_colour(reader.colour("wall-color", "#efe9dc"), entry.span, report)
+    walls = reader.word("wall", "plaster", MATERIALS) if kind == "room" else "plaster"
+    is_open = kind == "area" or not reader.flag("ceiling", True)
     body = reader.body()
     reader.done()
     if not size:
@@ -215,10 +222,10 @@ def _room(reader: Reader) -> Room | None:
     check_names(named, report)
     full = size if len(size) == 3 else (*size, 0.0)
     span = entry.head.span.to(entry.values[0].span) if entry.values else entry.span
-    colors = (floor_color, wall_color)
+    shell = (floor_color, wall_color, walls, is_open)
     levels = (tuple(platforms), tuple(flights))
     return Room(
-        name, kind, corner, full, floor, *colors, tuple(openings), tuple(placed), tuple(spots), *levels, span
+        name, kind, corner, full, floor, *shell, tuple(openings), tuple(placed), tuple(spots), *levels, span
     )
 
 

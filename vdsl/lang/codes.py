@@ -652,6 +652,19 @@ CODES: dict[str, Code] = {
         "stairs, at (1, 0.5)m, to cellar",
         "stairs, at (1, 0.5)m, to landing",
     ),
+    "VDS242": Code(
+        "nothing opens here",
+        "What opens has a part with a `hinge` or a `slide`: doors, cupboards, drawers, lids. The message lists what "
+        "opens in the scene. The hands move, but nothing opens.",
+        "(anna open table)",
+        "(anna open fridge)",
+    ),
+    "VDS243": Code(
+        "open or closed already",
+        "What was opened stays open, in the next scene line too, until somebody closes it.",
+        "(anna open fridge)\n(anna open fridge)",
+        "(anna open fridge)\n(anna close fridge)",
+    ),
     # -- files of other programs (VDS200-219) ------------------------------------------------
     "VDS200": Code(
         "no such file to import",

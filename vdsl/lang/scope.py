@@ -124,11 +124,11 @@ class Scope:
         return (*node.spots, *self.prop_spots(node)) if props else node.spots
 
     def prop_spots(self, node: SetNode) -> tuple[str, ...]:
-        """Spots that come with the prop placed at a node."""
+        """Spots and moving parts that come with the prop placed at a node."""
         if node.prop is None:
             return ()
         prop = self._catalog.get("prop", node.prop)
-        return tuple(getattr(prop, "spots", ()))
+        return (*getattr(prop, "spots", ()), *getattr(prop, "parts", ()))
 
     def node_of(self, target: Target) -> SetNode | None:
         """The tree's node of a target (for a spot, the node it is on)."""

@@ -90,7 +90,7 @@ def _person_point(name: str, state: SceneState, near: Point, height: float) -> T
 
 def _object_point(item: WorldObject, state: SceneState, near: Point) -> TargetPoint:
     prop = state.props.get(item.id)
-    if prop is not None:
+    if prop is not None and prop.hinge is None:
         matrix = prop.world_from_object
         grip = matrix[:3, :3] @ prop.grip + matrix[:3, 3]
         if prop.holder is not None and prop.holder[0] in state.actors:
@@ -133,7 +133,9 @@ def _free_top(item: WorldObject, top: Spot, state: SceneState, stand: Spot | Non
     """A place on a top where nothing stands yet, within reach of the one who puts something there."""
     x, y, z = top.position
     foot = stand.position if stand is not None else near
-    things = [p.world_from_object[:3, 3] for p in state.props.values() if p.holder is None]
+    things = [
+        p.world_from_object[:3, 3] for p in state.props.values() if p.holder is None and p.hinge is None
+    ]
     options = []
     for back in (0.42, 0.5, 0.34):
         for side in (0.0, 0.16, -0.16, 0.3, -0.3, 0.42, -0.42):
@@ -208,7 +210,7 @@ def approach(
     if item is None or item.kind in ("room", "area"):
         middle = room_middle(state) if item is None else _middle(item)
         return _at_spot(Spot("middle", middle), state.world, people, start, wide=True)
-    if item.id in state.props:
+    if item.id in state.props and state.props[item.id].hinge is None:
         holder = state.props[item.id].holder
         if holder is not None and holder[0] in state.actors:
             return None if holder[0] == who else _before(holder[0], state, people, start)

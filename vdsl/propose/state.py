@@ -47,7 +47,7 @@ def opening_state(
 ) -> SceneState:
     """How a scene begins: everybody of ``skeletons`` where the script puts them, or near the middle."""
     props = {
-        o.id: PropState(np.array(o.world_from_object, float), o.grip or (0.0, 0.0, 0.0))
+        o.id: PropState(np.array(o.world_from_object, float), grip_of(o), hinge=o.hinge, open=o.ajar)
         for o in world.objects
         if o.mesh is not None
     }
@@ -68,6 +68,14 @@ def opening_state(
             state = SceneState(world, ordered, props, scene.room)
             ordered[placement.character] = _facing(ordered[placement.character], placement.facing, state)
     return SceneState(world, ordered, props, scene.room)
+
+
+def grip_of(item: WorldObject) -> tuple[float, float, float]:
+    """Where a hand takes hold of what moves, in its own coordinates."""
+    if item.hinge is not None:
+        x, y, z = item.hinge.handle.tolist()
+        return x, y, z
+    return item.grip or (0.0, 0.0, 0.0)
 
 
 def _placed(placement: Placement, state: SceneState, report: Report) -> ActorState | None:

@@ -63,7 +63,9 @@ def tell(
     proposals, end = [], state
     for index, (name, path, motion) in enumerate(_motions(state, errands, filming, shot, most)):
         if index == 0:
-            end = replace(state, actors=motion.end_actors, props=motion.end_props)
+            opened = {k: p.open for k, p in motion.end_props.items() if p.hinge is not None}
+            world = state.world.opened(opened)
+            end = replace(state, world=world, actors=motion.end_actors, props=motion.end_props)
         proposals.append(_proposal(index, name, path, motion, _interest(errands, motion)))
     return Told(tuple(proposals), end)
 
@@ -108,7 +110,8 @@ def advance(
 
 def propose(line: StoryLine, shot: Shot, state: SceneState, filming: Filming) -> ProposalGrid:
     """S · C proposals of one shot: the line performed, and cameras on it."""
-    return propose_cameras(shot, propose_story(state, line, filming, shot=shot), filming)
+    stories = propose_story(state, line, filming, shot=shot)
+    return propose_cameras(shot, stories, replace(filming, world=state.world))
 
 
 def _errands(
@@ -138,13 +141,13 @@ def _errands(
 
 
 def _ways(errands: Mapping[str, Errand], most: int) -> list[tuple[int, int]]:
-    """(variant, path) pairs of whoever acts first, those that differ in both before the others."""
+    """(variant, path) pairs of whoever acts first: each way and variant once, then the other pairs."""
     if not errands:
         return [(0, 0)]
     first = next(iter(errands.values()))
     variants, paths = len(first.task.clip.variants), max(len(first.paths), 1)
-    pairs = sorted(product(range(variants), range(paths)), key=lambda p: (abs(p[0] - p[1]), p))
-    return pairs[:most]
+    first_of_all = [(k % variants, k % paths) for k in range(max(variants, paths))]
+    return list(dict.fromkeys([*first_of_all, *product(range(variants), range(paths))]))[:most]
 
 
 def _perform(
@@ -161,8 +164,11 @@ def _perform(
     tasks: dict[str, Task] = {}
     for name, item in errands.items():
         variants = item.task.clip.variants
-        line = item.paths[path % len(item.paths)] if item.paths else None
-        tasks[name] = replace(item.task, variant=variants[variant % len(variants)].name, path=line)
+        k = path % max(len(item.paths), 1)
+        line = item.paths[k] if item.paths else None
+        doors = (*item.task.passages, *(item.doors[k] if item.doors else ()))
+        word = variants[variant % len(variants)].name
+        tasks[name] = replace(item.task, variant=word, path=line, passages=doors)
     actors = {name: Actor(skeletons[name], actor) for name, actor in state.actors.items()}
     duration = shot.duration if shot is not None else None
     if duration is None and not tasks:
@@ -182,7 +188,9 @@ def _interest(errands: Mapping[str, Errand], motion: SceneMotion) -> tuple[NDArr
             if point.character is not None:
                 names[point.character] = None
             elif point.object in motion.props:
-                out.append(motion.props[point.object][:, :3, 3].astype(float))
+                hinge, moved = motion.end_props[point.object].hinge, motion.props[point.object].astype(float)
+                middle = np.zeros(3) if hinge is None else hinge.handle
+                out.append(moved[:, :3, :3] @ middle + moved[:, :3, 3])
             else:
                 out.append(np.tile(point.position, (motion.frames, 1)).astype(float))
     if not errands:

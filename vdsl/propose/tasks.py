@@ -10,11 +10,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from runtime.body.skeleton import Skeleton
-from runtime.motion.types import ActionClip, Talk, TargetPoint, Task, Timeline
-from runtime.nav import Discs, find_paths, obstacles, reachable
+from runtime.motion.types import ActionClip, Passage, Talk, TargetPoint, Task, Timeline
+from runtime.nav import Discs, obstacles, reachable
 
 from ..lang.diagnostics import Report
 from ..lang.ir import Beat, Shot, Target
+from .cameras import find_object
+from .opening import Way, part_point, part_to_move, stand_to_move, stands, ways_through
 from .places import ARM, Stop, approach, object_target, seat_of, seats, target_point
 from .state import PERSON_RADIUS, SceneState
 
@@ -30,11 +32,13 @@ class Errand:
 
     paths: from where the person is, empty where they stay; fetch: the way to the thing needed first
     stop: where they end up, None where they stay
+    doors: for each path, the doors opened on it
     """
 
     task: Task
     paths: tuple[NDArray[np.float64], ...]
     stop: Stop | None
+    doors: tuple[tuple[Passage, ...], ...] = ()
 
 
 def errand(
@@ -78,6 +82,9 @@ def _errand(
         target = TargetPoint(seat.position, seat.position, facing=seat.facing, seat=seat.position)
         if actor.posture == "sitting" and actor.seat and math.dist(actor.seat, seat.position) < 0.3:
             return Errand(_task(clip, target, second, shot), (), None)
+    driven = _driven(clip)
+    if driven is not None and beat.target is not None:
+        return _moving(beat, clip, driven, target, shot, state, taken, report, ways)
     if clip.needs in ("target", "second"):
         points = {"target": target, "second": second}
         fetched = _fetching(beat, clip, points, state, taken, _task(clip, target, second, shot))
@@ -96,12 +103,69 @@ def _errand(
         turn = replace(_task(clip, target, second, shot), arrive_heading=stop.heading)
         return Errand(turn if actor.posture == "standing" else _task(clip, target, second, shot), (), stop)
     people = state.people(but=beat.character) + taken
-    paths = find_paths(state.world, here, stop.place, ways, people=people)
-    if not paths:
+    found = ways_through(state.world, here, stop.place, ways, people)
+    if not found:
         _unreachable(beat, where, state, here, report)
         return None
     task = replace(_task(clip, target, second, shot), arrive_heading=stop.heading)
-    return Errand(task, tuple(paths), stop)
+    return _with_ways(task, found, stop)
+
+
+def _with_ways(task: Task, found: list[Way], stop: Stop) -> Errand:
+    return Errand(task, tuple(path for path, _ in found), stop, tuple(doors for _, doors in found))
+
+
+def _driven(clip: ActionClip) -> float | None:
+    """How far the action opens its target; None where it moves no part of it."""
+    drives = (d for v in clip.variants for d in v.timeline.drives if d.target == "target")
+    return next((d.openness for d in drives), None)
+
+
+def _moving(
+    beat: Beat,
+    clip: ActionClip,
+    openness: float,
+    target: TargetPoint | None,
+    shot: Shot | None,
+    state: SceneState,
+    taken: Discs,
+    report: Report,
+    ways: int,
+) -> Errand | None:
+    """To the handle of what is opened or closed, out of the way of what swings or slides."""
+    assert beat.target is not None
+    actor = state.actors[beat.character]
+    item = find_object(state.world, beat.target)
+    part = None if item is None else part_to_move(item, state.world, openness, actor.position)
+    if part is None:
+        report.warn("VDS242", beat.target.span, label=f"nothing of `{beat.target.written}` opens",
+                       help=_listing("what opens here: ", _openers(state)))  # fmt: skip
+        return Errand(_task(clip, target, None, shot), (), None)
+    if stands(part, openness):
+        label = f"`{beat.target.written}` is {'open' if openness > 0.5 else 'closed'} already"
+        report.warn("VDS243", beat.target.span, label=label)
+    task = _task(clip, part_point(part), None, shot)
+    people, here = state.people(but=beat.character) + taken, actor.position
+    stop = stand_to_move(part, openness, state.world, people, here)
+    stop = stop or approach(beat.target, state, beat.character, here, taken)
+    if stop is None:
+        _unreachable(beat, beat.target, state, here, report)
+        return None
+    task = replace(task, arrive_heading=stop.heading)
+    if math.dist(stop.place, here) < _STANDS_THERE:
+        return Errand(task, (), stop)
+    found = ways_through(state.world, here, stop.place, ways, people)
+    if not found:
+        _unreachable(beat, beat.target, state, here, report)
+        return None
+    return _with_ways(task, found, stop)
+
+
+def _openers(state: SceneState) -> list[str]:
+    """Names of what can be opened in the scene's room, or all of the set."""
+    paths = [o.path[:-1] for o in state.world.objects if o.hinge is not None]
+    near = [p for p in paths if p[: len(state.room)] == state.room] or paths
+    return list(dict.fromkeys(p[-1] for p in near))
 
 
 def _task(
@@ -169,19 +233,21 @@ def _fetching(
     way, heading = np.zeros((0, 3)), None
     if _away(need, here) > ARM:
         first = approach(wanted[0], state, beat.character, here, taken)
-        ways = find_paths(state.world, here, first.place, people=people) if first else []
+        ways = ways_through(state.world, here, first.place, 1, people) if first else []
         if first is None or not ways:
             return None
-        way, heading, here = ways[0], first.heading, first.place
+        (way, doors), heading, here = ways[0], first.heading, first.place
+        task = replace(task, passages=doors)
     task = replace(task, fetch=way, fetch_heading=heading)
     if _away(goal, here) <= (_NEAR_ENOUGH if goal.character else ARM):
         facing = heading if heading is not None else actor.heading
         return Errand(task, (), Stop(here[0], here[1], facing, here[2]))
     stop = approach(wanted[1], state, beat.character, here, taken)
-    paths = find_paths(state.world, here, stop.place, 2, people=people) if stop else []
-    if stop is None or not paths:
+    opened = tuple(door.object for door in task.passages)
+    found = ways_through(state.world, here, stop.place, 2, people, opened) if stop else []
+    if stop is None or not found:
         return None
-    return Errand(replace(task, arrive_heading=stop.heading), tuple(paths), stop)
+    return _with_ways(replace(task, arrive_heading=stop.heading), found, stop)
 
 
 def _away(point: TargetPoint, here: tuple[float, ...]) -> float:
@@ -204,8 +270,10 @@ def _turned_to(beat: Beat, clip: ActionClip, target: TargetPoint | None, state: 
 
 def _touches(clip: ActionClip, word: str) -> bool:
     """Whether hands go to that place in any variant."""
-    places = {word, "meet"} if word != "meet" else {"meet"}
-    return any(r.to in places for v in clip.variants for r in v.timeline.reaches)
+    places = {word, "meet", "clasp"} if word != "meet" else {"meet", "clasp"}
+    return any(
+        r.to in places or r.to.startswith("partner.") for v in clip.variants for r in v.timeline.reaches
+    )
 
 
 def _where_to(
@@ -225,7 +293,7 @@ def _where_to(
     for written, point, word in pairs:
         if written is None or point is None or (point.object in held and point.object is not None):
             continue
-        touched = _touches(clip, word) or (clip.needs == word)
+        touched = _touches(clip, word) or clip.needs == word or (clip.apart > 0 and point.character)
         if not touched and not (point.character and _touches(clip, "meet")):
             continue
         if _away(point, actor.position) > (_NEAR_ENOUGH if point.character else ARM):

@@ -34,7 +34,18 @@ CHANGES = ("amplitude", "tempo", "mirror", "duration", "stride", "cadence", "gai
 TRAVELS = ("none", "walk", "run", "skip", "crawl")
 #: Which drawer of the library an action lies in.
 GROUPS = ("going", "posture", "gesture", "hand", "social", "emotion", "sport", "work", "music", "talk")
-POSTURES = ("standing", "sitting", "kneeling", "crouching", "lying", "floor", "one-knee", "prone", "fours", "plank")
+POSTURES = (
+    "standing",
+    "sitting",
+    "kneeling",
+    "crouching",
+    "lying",
+    "floor",
+    "one-knee",
+    "prone",
+    "fours",
+    "plank",
+)
 FEELINGS = ("neutral", "happy", "sad", "angry", "afraid", "surprised", "disgusted")
 #: What may be said of a gait, with the kind of value and what it is until said.
 GAIT: dict[str, tuple[str, float]] = {

@@ -12,7 +12,6 @@ from .diagnostics import Report
 from .ids import Ids
 from .ir import MOVEMENT_FAMILIES, Beat, Shot, Target
 from .options import ShotOptions, read_options
-from .source import Span
 
 DEFAULT_LENS = (30.0, 80.0)  # the paper's, section 3.2
 DEFAULT_PROPOSALS = 80
@@ -59,7 +58,7 @@ def read_shots(
         base = _line_words(context)
         if len(cameras) > 1:
             base = [*base, *_camera_words(said)]
-        feelings = _feelings(shared, context, node.span, report) | _feelings(own, context, node.span, report)
+        feelings = _feelings(shared, context, node, report) | _feelings(own, context, node, report)
         shot = _shot(ids.take(base), node, camera, said, own, shared, context, defaults)
         shots.append(replace(shot, feelings=tuple(feelings.items())))
     return tuple(shots)
@@ -122,17 +121,20 @@ def _shot(
     )
 
 
-def _feelings(options: ShotOptions, context: LineContext, span: Span, report: Report) -> dict[str, str]:
+def _feelings(
+    options: ShotOptions, context: LineContext, node: ast.StoryNode, report: Report
+) -> dict[str, str]:
     """Whose face shows what."""
     found: dict[str, str] = {}
     for who, word in options.feelings:
         if who is None and not context.beats:
-            report.error(
-                "VDS261",
-                span,
-                label="nobody acts on this line",
-                help=f"say whose: `feeling NAME {word}`",
-            )
+            if not node.beats:  # else it is reported already what is wrong with them
+                report.error(
+                    "VDS261",
+                    node.span,
+                    label="nobody acts on this line",
+                    help=f"say whose: `feeling NAME {word}`",
+                )
             continue
         name = who.text if who is not None else context.beats[0].character
         if who is not None and name not in context.cast:

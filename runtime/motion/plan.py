@@ -16,10 +16,12 @@ from runtime.body.skeleton import JOINT
 from .gait import GAITS, WALK
 from .manner import PLAIN, Manner, manner_of
 from .postures import WAYS
+from .replay import Replay, fitted
 from .rotations import wrap
-from .route import Going, Route
+from .route import RATE, Going, Route
 from .types import (
     Actor,
+    Capture,
     Drive,
     FootMove,
     GaitStyle,
@@ -80,7 +82,8 @@ class Window:
 
 @dataclass(frozen=True)
 class Event:
-    """At ``time`` a hand takes, puts down (at ``place``) or passes on (to ``receiver``) a thing."""
+    """At ``time`` a hand takes, puts down (at ``place``), passes on (to ``receiver``) or throws a thing,
+    which then flies for ``flight`` seconds."""
 
     time: float
     kind: str
@@ -89,6 +92,7 @@ class Event:
     object: int
     place: Point | None = None
     receiver: str | None = None
+    flight: float = 0.0
 
 
 @dataclass(eq=False)
@@ -105,6 +109,7 @@ class Plan:
     homes: dict[int, Point] = field(default_factory=dict)
     windows: list[Window] = field(default_factory=list)
     events: list[Event] = field(default_factory=list)
+    replays: list[Replay] = field(default_factory=list)
     opened: set[int] = field(default_factory=set)
     feelings: list[tuple[str, float, float]] = field(default_factory=list)
     end: float = 0.0
@@ -144,6 +149,8 @@ def plan_task(
     partner = _close_in(plan, task, going)
     if clip.posture:
         route.settle(clip.posture, task.speed, clip.posture_time / task.speed)
+    if clip.capture is not None:
+        _rise(route, task)
     _take_needed(plan, task, props)
     duration = variant.duration / (task.speed * plan.manner.tempo)
     if task.duration is not None:
@@ -154,6 +161,8 @@ def plan_task(
         duration = max(duration, route.now - clip_start)
     if duration > 0:
         window = _play(plan, variant.timeline, start, duration, task)
+        if clip.capture is not None:
+            _replay(plan, clip.capture, window)
         route.now = max(route.now, window.start + duration)
     if partner is not None and clip.apart < _ROOM and not clip.hold:
         away = route.at[:2] - partner
@@ -182,6 +191,18 @@ def _close_in(plan: Plan, task: Task, going: Going) -> Array | None:
     elif abs(wrap(facing - route.heading)) > 0.2:
         route.travel(None, facing, Going(speed=task.speed))
     return partner
+
+
+def _replay(plan: Plan, capture: Capture, window: Window) -> None:
+    """The body goes through captured motion from where it stands, over the whole of a window."""
+    route = plan.route
+    at = (float(route.at[0]), float(route.at[1]))
+    replay = Replay(
+        fitted(capture, plan.actor.skeleton), window.start, window.duration, at, route.heading, route.floor
+    )
+    route.now = window.start
+    route.carry(*replay.way(RATE), window.duration, (replay.last_place(0), replay.last_place(1)))
+    plan.replays.append(replay)
 
 
 def _going(plan: Plan, task: Task, gait: str = "") -> Going:
@@ -407,9 +428,26 @@ def _grasp(
                 return  # nowhere to put it: it stays in the hand
             del plan.held[hand]
             plan.events.append(Event(time, "put", plan.name, hand, thing, place=place))
+        elif grasp.kind == "throw":
+            del plan.held[hand]
+            plan.events.append(_throw(plan, time, hand, thing, target, second))
         elif partner is not None:
             del plan.held[hand]
             plan.events.append(Event(time, "pass", plan.name, hand, thing, receiver=partner))
+
+
+def _throw(
+    plan: Plan, time: float, hand: str, thing: int, target: TargetPoint | None, second: TargetPoint | None
+) -> Event:
+    """To the second thing or person named, else the first unless it is the thing itself, else ahead."""
+    aim = next((p for p in (second, target) if p is not None and p.object != thing), None)
+    heading = np.array([np.cos(plan.route.heading), np.sin(plan.route.heading)])
+    at = np.array(aim.position[:2]) if aim is not None else plan.route.at[:2] + 2.6 * heading
+    flight = float(np.clip(np.hypot(*(at - plan.route.at[:2])) / 6.0, 0.3, 1.1))
+    receiver = aim.character if aim is not None else None
+    floor = (float(at[0]), float(at[1]), plan.route.floor)
+    place = None if receiver else aim.position if aim is not None else floor
+    return Event(time, "throw", plan.name, hand, thing, place, receiver, flight)
 
 
 def put_place(thing: int, target: TargetPoint | None, second: TargetPoint | None) -> Point | None:

@@ -16,17 +16,20 @@ from .rotations import blend
 from .types import Point, PropState
 
 Array = NDArray[np.float64]
+GRAVITY = 9.81
 
 
 @dataclass(frozen=True)
 class Hold:
-    """A hand holds a thing from ``start`` to ``end`` (±1e9: all along), then it stands at ``place``."""
+    """A hand holds a thing from ``start`` to ``end`` (±1e9: all along), then it stands at ``place``; if it
+    was thrown, after ``flight`` seconds in the air."""
 
     person: str
     hand: str
     start: float
     end: float
     place: Point | None
+    flight: float = 0.0
 
 
 def track_prop(
@@ -49,7 +52,7 @@ def track_prop(
     position = np.broadcast_to(prop.world_from_object[:3, 3], (frames, 3)).copy()
     rotation = np.broadcast_to(prop.world_from_object[:3, :3], (frames, 3, 3)).copy()
     grip = np.asarray(prop.grip, dtype=np.float64)
-    for hold in holds:
+    for n, hold in enumerate(holds):
         if hold.person not in figures:
             continue
         k = SIDE[hold.hand]
@@ -63,7 +66,16 @@ def track_prop(
         share = ramp(t, hold.start - 0.04, hold.start + 0.26)
         position = position + share[:, None] * (at - position)
         rotation = blend(rotation, turned, share)
-        if hold.end < 1e8 and hold.place is not None:
+        if hold.flight > 0:
+            catcher = holds[n + 1] if n + 1 < len(holds) else None
+            palm = palms[catcher.person][SIDE[catcher.hand]] if catcher is not None else None
+            stop = min(int(np.searchsorted(t, hold.end)), frames - 1)
+            landing = min(int(np.searchsorted(t, hold.end + hold.flight)), frames - 1)
+            goal = np.asarray(hold.place) if palm is None else palm[landing] - rotation[stop] @ grip
+            position[stop:] = _thrown(position[stop], goal, (t[stop:] - hold.end) / hold.flight, hold.flight)
+            standing = np.broadcast_to(_upright(rotation[stop]), rotation.shape)
+            rotation = blend(rotation, standing, ramp(t, hold.end, hold.end + hold.flight))
+        elif hold.end < 1e8 and hold.place is not None:
             share = ramp(t, hold.end - 0.2, hold.end + 0.02)
             standing = _upright(rotation[min(int(np.searchsorted(t, hold.end)), frames - 1)])
             position = position + share[:, None] * (np.asarray(hold.place) - position)
@@ -74,6 +86,13 @@ def track_prop(
     out = np.zeros((frames, 4, 4))
     out[:, :3, :3], out[:, :3, 3], out[:, 3, 3] = rotation, position, 1.0
     return out
+
+
+def _thrown(start: Array, goal: Array, u: Array, flight: float) -> Array:
+    """Places [T, 3] on the way of what falls freely from ``start`` to ``goal`` in ``flight`` seconds."""
+    u = np.clip(u, 0.0, 1.0)[:, None]
+    fall = np.array([0.0, 0.0, 0.5 * GRAVITY * flight**2])
+    return np.asarray(start + u * (goal - start) + u * (1.0 - u) * fall)
 
 
 def _upright(rotation: Array) -> Array:

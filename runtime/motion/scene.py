@@ -325,16 +325,18 @@ def _holds(plans: dict[str, Plan], props: dict[int, PropState]) -> dict[int, lis
             if thing in props:
                 holds.setdefault(thing, []).append(Hold(name, hand, -1e9, 1e9, None))
     for event in sorted((e for p in plans.values() for e in p.events), key=lambda e: e.time):
-        nobody = event.kind == "pass" and event.receiver not in plans
+        nobody = (event.kind == "pass" or event.receiver) and event.receiver not in plans
         if event.object not in props or props[event.object].hinge is not None or nobody:
             continue
         mine = holds.setdefault(event.object, [])
         if mine:
-            mine[-1] = Hold(mine[-1].person, mine[-1].hand, mine[-1].start, event.time, event.place)
+            last = mine[-1]
+            mine[-1] = Hold(last.person, last.hand, last.start, event.time, event.place, event.flight)
         if event.kind == "take":
             mine.append(Hold(event.person, event.hand, event.time, 1e9, None))
-        elif event.kind == "pass" and event.receiver in plans:
-            mine.append(Hold(event.receiver, _receiving(plans[event.receiver], event), event.time, 1e9, None))
+        elif event.receiver is not None:
+            caught = event.time + event.flight
+            mine.append(Hold(event.receiver, _receiving(plans[event.receiver], event), caught, 1e9, None))
     return holds
 
 

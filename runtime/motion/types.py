@@ -171,7 +171,8 @@ class Reach:
 
 @dataclass(frozen=True)
 class Grasp:
-    """At ``time`` the hand takes (``take``), lets go of (``put``) or hands over (``pass``) a thing."""
+    """At ``time`` the hand takes (``take``), lets go of (``put``) or hands over (``pass``) or
+    throws (``throw``) a thing."""
 
     kind: str
     hand: str
@@ -312,6 +313,20 @@ class Variant:
     gait: GaitStyle = field(default_factory=GaitStyle)
 
 
+@dataclass(frozen=True, eq=False)
+class Capture:
+    """Motion captured elsewhere, on our joints, as if its first frame stood over the origin facing +X.
+
+    turns: float32 [N, J, 3, 3], of each joint in the world from the bind pose; known: bool [J], joints it has
+    root: float64 [N, 3], the hips, in lengths of the leg (hips to ankle)
+    """
+
+    fps: float
+    turns: NDArray[np.float32]
+    known: NDArray[np.bool_]
+    root: NDArray[np.float64]
+
+
 @dataclass(frozen=True)
 class ActionClip:
     """An action ready to be performed.
@@ -326,6 +341,7 @@ class ActionClip:
         seconds it takes (0: as long as it naturally does); rises: stands up again afterwards
     apart: metres between the two people of the action, 0 for talking distance; hold: the last pose stays
     needs_hand: ``left`` or ``right`` where what it needs has to be in that hand, "" for either
+    capture: motion that the body goes through in the clip's own part
     """
 
     name: str
@@ -343,6 +359,7 @@ class ActionClip:
     apart: float = 0.0
     needs_hand: str = ""
     hold: bool = False
+    capture: Capture | None = None
 
     def variant(self, name: str) -> Variant:
         """The variant of that name, or the first."""

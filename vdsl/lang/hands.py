@@ -33,11 +33,11 @@ class Hands:
             for other in self._held.values():
                 _drop(other, beat.target.path)
             held.append(beat.target.path)
-        if "put" in moves or "pass" in moves:
+        if moves & {"put", "pass", "throw"}:
             gone = self._meant(beat, held)
             if gone is not None:
                 held.remove(gone)
-                if "pass" in moves and beat.second is not None and beat.second.kind == "character":
+                if moves & {"pass", "throw"} and beat.second is not None and beat.second.kind == "character":
                     self._held.setdefault(beat.second.path[0], []).append(gone)
 
     def _meant(self, beat: Beat, held: list[Thing]) -> Thing | None:

@@ -7,6 +7,7 @@ unless the action holds its last pose.
 from __future__ import annotations
 
 from collections import defaultdict
+from dataclasses import replace
 
 from runtime.motion.types import (
     ActionClip,
@@ -25,9 +26,12 @@ from runtime.motion.types import (
     Variant,
 )
 from vdsl.lang.definitions.action import ActionDef, GaitDef
+from vdsl.lang.definitions.files import FileActionDef
 from vdsl.lang.definitions.timeline import POSED, Key, Move, Part
 
-GRASPS = ("take", "put", "pass")
+from .models import file_motion
+
+GRASPS = ("take", "put", "pass", "throw")
 
 
 def build_clip(action: ActionDef) -> ActionClip:
@@ -38,7 +42,7 @@ def build_clip(action: ActionDef) -> ActionClip:
         )
         for v in action.variants
     )
-    return ActionClip(
+    clip = ActionClip(
         action.name,
         variants,
         action.travel,
@@ -55,6 +59,15 @@ def build_clip(action: ActionDef) -> ActionClip:
         action.needs_hand,
         any(v.part.hold for v in action.variants),
     )
+    return with_capture(clip, action) if isinstance(action, FileActionDef) else clip
+
+
+def with_capture(clip: ActionClip, action: FileActionDef) -> ActionClip:
+    """The clip playing its file's motion, as long as that is where the action does not say."""
+    capture = file_motion(action)
+    seconds = (len(capture.turns) - 1) / capture.fps
+    variants = tuple(replace(v, duration=v.duration or seconds) for v in clip.variants)
+    return replace(clip, variants=variants, capture=capture)
 
 
 def _gait(gait: GaitDef) -> GaitStyle:

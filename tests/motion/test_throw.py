@@ -1,0 +1,53 @@
+"""Throwing: what is thrown flies freely, lands where it was aimed, or is caught."""
+
+from __future__ import annotations
+
+import numpy as np
+from motion.scenes import FPS, at, person, thing
+
+from runtime.motion.perform import perform
+from runtime.motion.types import ActionClip, Grasp, SceneMotion, TargetPoint, Task, Timeline, Variant
+
+THROW = ActionClip(
+    "throw",
+    (Variant("plain", 1.5, Timeline(grasps=(Grasp("throw", "holding", 0.4),))),),
+    travel="none",
+    needs="target",
+)
+
+
+def thrown(aim: TargetPoint | None, two: bool = False) -> SceneMotion:
+    ball = thing(0.0, 0.0, 1.0, 0.1)
+    actors = {"anna": person(held=(("r", 1),))}
+    if two:
+        actors["ben"] = person(x=3.0, heading=np.pi)
+    task = Task(THROW, target=at(0.0, 0.0, 1.0, object=1), second=aim)
+    return perform(actors, {"anna": task}, {1: ball}, FPS, 1)
+
+
+def test_what_is_thrown_lands_where_it_was_aimed_and_stays() -> None:
+    motion = thrown(at(3.0, 0.5, 0.0))
+    way = motion.props[1][:, :3, 3]
+    assert np.allclose(way[-1], (3.0, 0.5, 0.0), atol=1e-3)
+    assert motion.end_actors["anna"].held == ()
+    assert np.allclose(motion.end_props[1].world_from_object[:3, 3], (3.0, 0.5, 0.0), atol=1e-3)
+
+
+def test_it_falls_freely_on_the_way() -> None:
+    way = thrown(at(4.0, 0.0, 0.0)).props[1][:, :3, 3].astype(np.float64)
+    moving = np.nonzero(np.linalg.norm(np.diff(way, axis=0), axis=1) * FPS > 2.5)[0][1:-1]
+    fall = np.diff(way[moving, 2], 2) * FPS**2
+    assert np.allclose(fall, -9.81, atol=0.2)
+
+
+def test_thrown_at_nobody_it_comes_to_the_floor() -> None:
+    way = thrown(None).props[1][:, :3, 3]
+    assert way[-1, 2] < 0.01 and way[-1, 0] > 2.0
+
+
+def test_the_other_person_catches_it() -> None:
+    motion = thrown(at(3.0, 0.0, 1.0, character="ben"), two=True)
+    assert [thing for _, thing in motion.end_actors["ben"].held] == [1]
+    assert motion.end_actors["anna"].held == ()
+    step = np.linalg.norm(np.diff(motion.props[1][:, :3, 3], axis=0), axis=1) * FPS
+    assert step.max() < 9.0  # no leap at the catch

@@ -22,6 +22,7 @@ from .figure import ArmPose, Figure, HandGoals
 from .gait import level_thigh, sit_clearance
 from .hands import MIRROR
 from .plan import Plan
+from .replay import play
 from .rotations import norm, rot_zy, turned, unwrapped, wrap
 from .types import Touches
 
@@ -372,7 +373,18 @@ class Performer:
         thumb = np.clip(0.35 + 0.6 * curl, 0.0, 1.0)
         thumb = thumb - (0.8 + thumb) * np.clip(weight * c.pair("fingers", "thumb"), 0.0, 1.0)
         self.figure.fingers(np.clip(curl, 0.0, 1.0), np.clip(point, 0, 1), thumb)
-        return palms
+        self._replay()
+        return self.palms
+
+    def _replay(self) -> None:
+        """Lays captured motion over the pose."""
+        self.replayed = []
+        for replay in self.plan.replays:
+            own, standing = play(replay, self.figure, self.feet, self.t)
+            self.replayed.append((own, standing))
+            hands = self.figure.hands.offset
+            for k, side in enumerate(("l", "r")):
+                self.palms[k, own] = self.figure.point(f"hand_{side}", hands[k, 0])[own]
 
     def touches(self, frames: int) -> Touches:
         """What hands, feet and eyes are on, over the first ``frames``."""
@@ -380,6 +392,8 @@ class Performer:
         moved = sum(np.abs(c.pair("foot", axis)) for axis in ("forward", "out", "lift"))
         hanging = self.sitting * self._dangle() > 0.005
         planted = (feet.air <= 0) & (moved < 0.004) & (feet.lift < 1e-4) & ~hanging
+        for own, standing in self.replayed:
+            planted[:, own] = standing
         return Touches(
             planted[:, :frames],
             feet.ground[:, :frames],

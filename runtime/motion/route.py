@@ -316,7 +316,8 @@ class Route:
         m = 1.0 - 2.0 * foot
         c, s = np.cos(self.heading), np.sin(self.heading)
         by = np.array([move.ahead * c - m * move.out * s, move.ahead * s + m * move.out * c])
-        place = (float(x + by[0]), float(y + by[1]), float(yaw + move.turn))
+        around = _turned(np.array([x, y]) - self.at[:2], move.turn) + self.at[:2] + by
+        place = (float(around[0]), float(around[1]), float(yaw + move.turn))
         self.steps.append(Step(foot, start, end, place, 0.0, self.floor, high=move.lift))
         self.feet_now[foot] = place
         wait = 0.12 * (end - start)
@@ -328,17 +329,26 @@ class Route:
         c, s = np.cos(self.heading), np.sin(self.heading)
         by = np.array([jump.ahead * c - jump.aside * s, jump.ahead * s + jump.aside * c])
         root = self.at[:2]
-        turn = np.array([[np.cos(jump.turn), -np.sin(jump.turn)], [np.sin(jump.turn), np.cos(jump.turn)]])
         hopping = {"both": (0, 1), "left": (0,), "right": (1,)}[jump.feet]
         for foot in (0, 1):
             x, y, yaw = self.feet_now[foot]
-            xy = root + by + turn @ (np.array([x, y]) - root)
+            xy = root + by + _turned(np.array([x, y]) - root, jump.turn)
             place = (float(xy[0]), float(xy[1]), float(yaw + jump.turn))
             tuck = jump.tuck if foot in hopping else 0.0
             self.steps.append(Step(foot, start, end, place, 0.0, self.floor, leap=height, tuck=tuck))
             self.feet_now[foot] = place
         self.flights.append(Flight(start, end, height))
         self._move(start - 0.06, end + 0.04, by, jump.turn)
+
+    def carry(self, xyz: Array, yaw: Array, duration: float, places: tuple[Triple, Triple]) -> None:
+        """Goes as is laid down elsewhere: floor points [K, 3] and headings [K] at :data:`RATE`, and where the
+        feet (x, y, yaw) stand when it is over."""
+        for foot, place in enumerate(places):
+            self.steps.append(Step(foot, self.now, self.now + min(0.3, 0.5 * duration), place, ground=self.floor))
+            self.feet_now[foot], self.pitch_now[foot] = place, 0.0
+        self._push(xyz, yaw)
+        self.now += duration
+        self.at, self.heading = xyz[-1].copy(), float(yaw[-1])
 
     # -- postures --------------------------------------------------------------------------
 
@@ -457,6 +467,12 @@ class Route:
     def palms(self, t: Array) -> Feet:
         """Both palms planted on the floor at times ``t`` [T]."""
         return _tracks(t, self.palms_first, self.palm_steps)
+
+
+def _turned(offset: Array, angle: float) -> Array:
+    """An offset [2] turned to the left."""
+    c, s = np.cos(angle), np.sin(angle)
+    return np.array([c * offset[0] - s * offset[1], s * offset[0] + c * offset[1]])
 
 
 def _tracks(t: Array, first: list[Footing], steps: list[Step]) -> Feet:

@@ -16,14 +16,24 @@ from numpy.typing import NDArray
 from runtime.body.build import Body
 from runtime.formats import limits
 from runtime.formats.boxes import Rect, column_boxes, floor_height, floors, surface_points
+from runtime.formats.clips import read_clip
 from runtime.formats.errors import ModelFileError
 from runtime.formats.finish import piece_mesh
 from runtime.formats.load import load_model
 from runtime.formats.model import Fit, Piece, settled
 from runtime.formats.person import read_person
 from runtime.mesh import Mesh
+from runtime.motion.types import Capture
 
-from ..lang.definitions.files import PERSON, FileCastDef, FileDef, FilePropDef, FileSetDef, broken_file
+from ..lang.definitions.files import (
+    PERSON,
+    FileActionDef,
+    FileCastDef,
+    FileDef,
+    FilePropDef,
+    FileSetDef,
+    broken_file,
+)
 from ..lang.definitions.types import ModelFile
 from ..lang.diagnostics import Report
 from ..library import Catalog
@@ -71,6 +81,8 @@ def _build(definition: FileDef) -> None:
         file_prop(definition.model)
     elif isinstance(definition, FileSetDef):
         file_set(definition.model)
+    elif isinstance(definition, FileActionDef):
+        file_motion(definition)
     elif isinstance(definition, FileCastDef):
         file_person(definition.model, definition.model.height or PERSON)
 
@@ -89,6 +101,20 @@ def file_person(model: ModelFile, height: float) -> Body:
 def _file_person(model: ModelFile, state: tuple[int, int]) -> Body:
     height = model.height or PERSON
     return read_person(Path(model.path), Path(model.folder), height, model.up, model.turn)
+
+
+def file_motion(action: FileActionDef) -> Capture:
+    """Raises :class:`ModelFileError`. Kept as long as the file is the same."""
+    how = (action.clip, action.cut, action.times, action.stays)
+    return _file_motion(action.model, how, _state(action.model))
+
+
+@lru_cache(maxsize=16)
+def _file_motion(
+    model: ModelFile, how: tuple[str, tuple[float, float | None], int, bool], state: tuple[int, int]
+) -> Capture:
+    clip, cut, times, stays = how
+    return read_clip(Path(model.path), Path(model.folder), clip, cut, model.up, model.turn, times, stays)
 
 
 def file_set(model: ModelFile) -> FileSet:

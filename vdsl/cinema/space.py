@@ -130,14 +130,16 @@ class Stage:
 
 def stage_of(world: World, places: Array) -> Stage:
     """The rooms in which the points [N, 3] lie (all floors where none does) and their lowest ceiling."""
-    rooms, ceilings = [], []
+    rooms, ceilings = [], list[tuple[float, float]]()
     for item in world.objects:
         if item.kind not in ("room", "area"):
             continue
         low, high = np.array(item.low), np.array(item.high)
-        if ((places[:, :2] >= low[:2] - 0.1) & (places[:, :2] <= high[:2] + 0.1)).all(axis=1).any():
+        if ((places >= low - 0.1) & (places <= high + np.array((0.1, 0.1, -0.1)))).all(axis=1).any():
             rooms.append((low[0], low[1], high[0], high[1]))
-            if item.kind == "room" and high[2] > 2.0:
-                ceilings.append(float(high[2]))
-    ceiling = min(ceilings) if ceilings and not world.outdoor else None
+            if item.kind == "room" and high[2] - low[2] > 2.0:
+                ceilings.append((float(low[2]), float(high[2])))
+    ceiling = None
+    if ceilings and not world.outdoor:  # of rooms above each other, that of the upper one
+        ceiling = min(high for low, high in ceilings if low > max(ceilings)[0] - 1.0)
     return Stage(tuple(rooms) or tuple(world.floors), ceiling)

@@ -6,7 +6,7 @@ subject, so that framing and measuring need not ask which it is.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -40,6 +40,17 @@ class Subject:
     @property
     def frames(self) -> int:
         return len(self.position)
+
+    @property
+    def floor(self) -> float:
+        """Height of the lowest floor it is on."""
+        return float(self.position[:, 2].min())
+
+    def shifted(self, up: float) -> Subject:
+        """The same so many metres higher."""
+        shift = np.array((0.0, 0.0, up))
+        moved = {name: path + shift for name, path in self.landmarks.items()}
+        return replace(self, position=self.position + shift, landmarks=moved)
 
     def travel(self) -> float:
         """Metres from where it starts to the farthest it gets from there on the floor."""
@@ -95,11 +106,17 @@ def person(
     )
 
 
-def thing(name: str, low: NDArray[np.float64], high: NDArray[np.float64], facing: float = 0.0) -> Subject:
-    """An object by its bounds over time; low, high: float64 [T, 3]."""
+def thing(
+    name: str,
+    low: NDArray[np.float64],
+    high: NDArray[np.float64],
+    facing: float = 0.0,
+    floor: float = 0.0,
+) -> Subject:
+    """An object by its bounds over time; low, high: float64 [T, 3]; floor: height of that below it."""
     centre, size = (low + high) / 2, high - low
     tall = np.maximum(np.maximum(size[:, 2], np.linalg.norm(size[:, :2], axis=1) / 1.5), 0.12)
-    return _box(name, "thing", centre, tall, np.full(len(low), facing))
+    return _box(name, "thing", centre, tall, np.full(len(low), facing), floor)
 
 
 def place(name: str, low: tuple[float, ...], high: tuple[float, ...], frames: int) -> Subject:
@@ -107,7 +124,7 @@ def place(name: str, low: tuple[float, ...], high: tuple[float, ...], frames: in
     span = float(np.hypot(high[0] - low[0], high[1] - low[1]))
     tall = float(np.clip(0.36 * span, 1.8, 5.0))
     centre = np.tile(((low[0] + high[0]) / 2, (low[1] + high[1]) / 2, low[2] + 0.9), (frames, 1))
-    return _box(name, "place", centre, np.full(frames, tall), np.zeros(frames))
+    return _box(name, "place", centre, np.full(frames, tall), np.zeros(frames), low[2])
 
 
 def _box(
@@ -116,6 +133,7 @@ def _box(
     centre: NDArray[np.float64],
     tall: NDArray[np.float64],
     heading: NDArray[np.float64],
+    floor: float,
 ) -> Subject:
     """A faceless subject: landmarks spread evenly from ``crown`` to ``feet``."""
 
@@ -128,7 +146,7 @@ def _box(
     share |= {"pocket": 0.0, "waist": 0.0, "thigh": -0.1, "knees": 0.0, "feet": -0.5, "hand_l": 0.0}
     share["hand_r"] = 0.0
     position = centre.copy()
-    position[:, 2] = 0.0
+    position[:, 2] = floor
     return Subject(
         name,
         kind,

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from runtime.body.skeleton import JOINT, Skeleton
+from runtime.nav import level_at
 from runtime.world import World, WorldObject
 
 from ..cinema import rig_cinema, rig_paper
@@ -113,7 +114,9 @@ def subject_of(shot: Shot, story: StoryProposal, filming: Filming) -> Subject:
         skeleton = filming.skeletons[focus.path[-1]]
         return person(focus.path[-1], skeleton, acted.world_from_joint, acted.position, acted.heading)
     item = find_object(filming.world, focus)
-    return _room_subject(filming, story.frames) if item is None else _thing_subject(item, story)
+    return (
+        _room_subject(filming, story.frames) if item is None else _thing_subject(item, story, filming.world)
+    )
 
 
 def _establishes(shot: Shot, story: StoryProposal) -> bool:
@@ -140,7 +143,7 @@ def _room_subject(filming: Filming, frames: int) -> Subject:
     return place(filming.world.name, (*low.tolist(), 0.0), (*high.tolist(), 2.6), frames)
 
 
-def _thing_subject(item: WorldObject, story: StoryProposal) -> Subject:
+def _thing_subject(item: WorldObject, story: StoryProposal, world: World) -> Subject:
     name = item.path[-1]
     low, high = (np.tile(corner, (story.frames, 1)) for corner in (item.low, item.high))
     if item.kind in ("room", "area"):
@@ -151,7 +154,9 @@ def _thing_subject(item: WorldObject, story: StoryProposal) -> Subject:
         low, high = low + shift, high + shift
     stand = item.spot("stand")
     facing = 0.0 if stand is None or stand.facing is None else stand.facing + np.pi
-    return thing(name, low, high, facing)
+    x, y, _ = item.centre
+    floor = world.storeys[level_at(world, (x, y, item.low[2]))].height
+    return thing(name, low, high, facing, floor)
 
 
 def _consider(

@@ -18,7 +18,7 @@ Array = NDArray[np.float64]
 Way = tuple[Array, tuple[Passage, ...]]
 
 _ASIDE = 0.21  # metres between the middle of a body and whatever swings past it
-_REACHES = (0.55, 0.48, 0.62, 0.7, 0.42, 0.78)  # metres on the floor to a handle, the handiest first
+_REACHES = (0.5, 0.45, 0.56, 0.62, 0.7, 0.78)  # metres on the floor to a handle, the handiest first
 _TURNS = 24
 _SHUT = 0.55  # a door standing less open than this is opened further
 _THICK = 0.09  # metres around a leaf within which a way goes through it
@@ -74,7 +74,7 @@ def stand_to_move(
     handle = np.array(handle_of(part))
     level = level_at(world, (handle[0], handle[1], handle[2] - 0.3))
     grid = grid_of(world, level).with_people(people)
-    for x, y in _around(part, handle, before):
+    for x, y in _around(part, handle, before, start):
         place = (x, y, grid.height)
         if grid.clearance_at(np.array(place)) < 0.9 * BODY_RADIUS or _swept(part, openness, place):
             continue
@@ -83,21 +83,27 @@ def stand_to_move(
     return None
 
 
-def _around(part: WorldObject, handle: Array, before: Array | None) -> Iterator[tuple[float, float]]:
-    """Places round a handle, those straight before it first."""
+def _around(
+    part: WorldObject, handle: Array, before: Array | None, start: Place | None
+) -> Iterator[tuple[float, float]]:
+    """Places round a handle: where one stands already, then those straight before it, near ones first."""
     assert part.hinge is not None
-    centre = np.array(part.centre[:2])
-    across = _across(part)
+    centre, across = np.array(part.centre[:2]), _across(part)
     side = before if before is not None else handle[:2] + 0.3 * _front(part, handle)
     if (side - centre) @ across < 0:
         across = -across
+    either = before is None and part.ajar > 0.3  # an open leaf is taken hold of from both sides
+    if either and start is not None and (np.array(start[:2]) - centre) @ across < 0:
+        across = -across
     straight = math.atan2(across[1], across[0])
     found = []
+    if start is not None and before is None and 0.35 < math.dist(start[:2], handle[:2]) < 0.66:
+        found.append((-1.0, float(start[0]), float(start[1])))
     for r, reach in enumerate(_REACHES):
         for k in range(_TURNS):
             turn = (k + 1) // 2 * (1 if k % 2 else -1) * 2 * math.pi / _TURNS
             at = handle[:2] + reach * np.array([math.cos(straight + turn), math.sin(straight + turn)])
-            if (at - centre) @ across > 0.05:
+            if either or (at - centre) @ across > 0.05:
                 found.append((abs(turn) + 0.12 * r, float(at[0]), float(at[1])))
     return ((x, y) for _, x, y in sorted(found))
 

@@ -66,7 +66,7 @@ def no_room(
     ceiling = stage.ceiling if stage.ceiling is not None else np.inf
     return _first(
         {
-            "below_floor": camera[..., 2].min(axis=1) < FLOOR_CLEARANCE - 1e-6,
+            "below_floor": camera[..., 2].min(axis=1) < shooting.floor + FLOOR_CLEARANCE - 1e-6,
             "in_wall": room.wall < _IN_WALL,
             "in_object": room.object < _NEAR_OBJECT * _arm(shooting),
             "through_ceiling": _through(camera[..., 2], ceiling),

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,6 +31,7 @@ class Shooting:
     order: [P] which of the given rows each is; movements, scales, angles: words, P each
     key: frame the framing is of; draw: what was drawn, all [P]; lifted: radians off the asked angle to
     stay above the floor; relative: azimuth from the subject's heading, radians
+    floor: height of the subject's floor, above which cameras stay
     """
 
     rig: str
@@ -44,6 +45,7 @@ class Shooting:
     lifted: Array
     relative: Array
     height: Array
+    floor: float = 0.0
 
     @property
     def strata(self) -> NDArray[np.int64]:
@@ -66,6 +68,7 @@ class Shooting:
             self.lifted[rows],
             self.relative[rows],
             self.height[rows],
+            self.floor,
         )
 
     def window(self, at: NDArray[np.int64], frames: int) -> NDArray[np.bool_]:
@@ -108,7 +111,7 @@ class Shooting:
         if kind in ("dolly", "pedestal"):
             for word, t in (("start", 0), ("end", -1)):
                 out |= {f"{word}_{a}": float(self.track.position[p, t, k]) for k, a in enumerate("xyz")}
-        low = float(self.track.position[p, :, 2].min())
+        low = float(self.track.position[p, :, 2].min()) - self.floor
         if self.lifted[p] > 1e-9 or low <= FLOOR_CLEARANCE + 1e-9:
             out["lifted"] = float(self.lifted[p])
         return out
@@ -124,13 +127,23 @@ def shoot(
     fps: float,
 ) -> Shooting:
     """Tracks of the sampled rows on one subject."""
+    floor, subject = subject.floor, subject.shifted(-subject.floor)  # cameras are drawn above a floor at 0
     parts: list[Shooting] = []
     for m, movement in enumerate(shot.movements):
         for s, scale in enumerate(shot.scales):
             local = np.flatnonzero((sample.movement[rows] == m) & (sample.scale[rows] == s))
             if len(local):
                 parts.append(_shoot_one(shot, subject, sample, rows, local, movement, scale, rig, film, fps))
-    return parts[0] if len(parts) == 1 else _joined(parts)
+    return _raised(parts[0] if len(parts) == 1 else _joined(parts), floor)
+
+
+def _raised(shooting: Shooting, floor: float) -> Shooting:
+    """The same, above a floor at another height."""
+    if abs(floor) < 1e-9:
+        return shooting
+    track, up = shooting.track, np.array((0.0, 0.0, floor))
+    moved = replace(track, position=track.position + up, look_at=track.look_at + up)
+    return replace(shooting, track=moved, floor=floor)
 
 
 def _shoot_one(

@@ -18,7 +18,7 @@ from ..lang.ir import Beat, Shot, Target
 from .cameras import find_object
 from .opening import Way, part_point, part_to_move, stand_to_move, stands, ways_through
 from .places import ARM, Stop, approach, object_target, seat_of, seats, target_point
-from .state import PERSON_RADIUS, SceneState
+from .state import PERSON_RADIUS, SceneState, floor_under
 
 _NEAR_ENOUGH = 1.25  # metres between people who can hand each other things or talk without moving
 _STANDS_THERE = 0.2  # metres from the place to stand within which nobody takes a step
@@ -352,16 +352,17 @@ def _unreachable(
     people = state.people(but=beat.character)
     goal = target_point(target, state, here).position
     blocking = obstacles(state.world, here, goal)
-    names = [state.world.objects[i].path[-1] for i in blocking if i >= 0]
+    names = _blockers(state, blocking, target)
     crowd = [
-        name
+        f"`{name}`"
         for name, a in state.actors.items()
         if name != beat.character and math.hypot(a.position[0] - goal[0], a.position[1] - goal[1]) < 0.7
     ]
     what = list(dict.fromkeys(names + crowd))
-    in_the_way = _listing("", what)
     label = f"{beat.character} cannot get to `{target.written}`"
-    label += f": {in_the_way} in the way" if in_the_way else ": no floor leads there"
+    upstairs = abs(floor_under(state.world, goal) - here[2]) > 0.05
+    nothing = "no stairs lead there" if upstairs else "no floor leads there"
+    label += f": {', '.join(what[:6])} in the way" if what else f": {nothing}"
     reach = []
     for item in state.world.objects:
         stand = next((s for s in item.spots if s.name.startswith("stand")), None)
@@ -374,6 +375,20 @@ def _unreachable(
         label=label,
         help=_listing(f"{beat.character} can get to ", reach) or f"give {beat.character} room to walk",
     )
+
+
+def _blockers(state: SceneState, blocking: list[int], target: Target) -> list[str]:
+    """Names of what stands in the way: parts by what they belong to, walls as such, the target itself aside."""
+    names = []
+    for i in blocking:
+        item = state.world.objects[i] if i >= 0 else None
+        if item is not None and item.hinge is not None:
+            item = state.world.objects[item.hinge.owner]
+        if item is None or item.kind in ("room", "area"):
+            names.append("a wall")
+        elif item.path != target.path:
+            names.append(f"`{item.path[-1]}`")
+    return names
 
 
 def disc(stop: Stop) -> tuple[float, float, float, float]:

@@ -82,8 +82,8 @@ class Window:
 
 @dataclass(frozen=True)
 class Event:
-    """At ``time`` a hand takes, puts down (at ``place``), passes on (to ``receiver``) or throws a thing,
-    which then flies for ``flight`` seconds."""
+    """At ``time`` a hand takes, puts down (at ``place``), passes on (to ``receiver``), throws or (without
+    a hand) sends off a thing, which then flies for ``flight`` seconds."""
 
     time: float
     kind: str
@@ -420,6 +420,10 @@ def _grasp(
         if thing is not None and thing not in plan.held.values() and hand not in plan.held:
             plan.held[hand] = thing
             plan.events.append(Event(time, "take", plan.name, hand, thing))
+    elif grasp.kind == "send":
+        thing = target.object if target is not None else None
+        if thing is not None and thing not in plan.held.values():
+            plan.events.append(_throw(plan, time, "", thing, target, second))
     elif hand in plan.held:
         thing = plan.held[hand]
         if grasp.kind == "put":
@@ -439,15 +443,21 @@ def _grasp(
 def _throw(
     plan: Plan, time: float, hand: str, thing: int, target: TargetPoint | None, second: TargetPoint | None
 ) -> Event:
-    """To the second thing or person named, else the first unless it is the thing itself, else ahead."""
+    """To the second thing or person named, else the first unless it is the thing itself, else ahead.
+
+    Without a ``hand`` it leaves from where it lies, and comes to lie before a person.
+    """
     aim = next((p for p in (second, target) if p is not None and p.object != thing), None)
     heading = np.array([np.cos(plan.route.heading), np.sin(plan.route.heading)])
     at = np.array(aim.position[:2]) if aim is not None else plan.route.at[:2] + 2.6 * heading
     flight = float(np.clip(np.hypot(*(at - plan.route.at[:2])) / 6.0, 0.3, 1.1))
     receiver = aim.character if aim is not None else None
+    if receiver and not hand:
+        at, receiver = at - 0.5 * heading, None
+        aim = None
     floor = (float(at[0]), float(at[1]), plan.route.floor)
     place = None if receiver else aim.position if aim is not None else floor
-    return Event(time, "throw", plan.name, hand, thing, place, receiver, flight)
+    return Event(time, "throw" if hand else "send", plan.name, hand, thing, place, receiver, flight)
 
 
 def put_place(thing: int, target: TargetPoint | None, second: TargetPoint | None) -> Point | None:

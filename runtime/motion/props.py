@@ -22,7 +22,8 @@ GRAVITY = 9.81
 @dataclass(frozen=True)
 class Hold:
     """A hand holds a thing from ``start`` to ``end`` (±1e9: all along), then it stands at ``place``; if it
-    was thrown, after ``flight`` seconds in the air."""
+    was thrown, after ``flight`` seconds in the air. ``hand`` is empty for what is only sent off, from
+    where it lies."""
 
     person: str
     hand: str
@@ -54,6 +55,11 @@ def track_prop(
     grip = np.asarray(prop.grip, dtype=np.float64)
     for n, hold in enumerate(holds):
         if hold.person not in figures:
+            continue
+        if not hold.hand:
+            stop = min(int(np.searchsorted(t, hold.end)), frames - 1)
+            u = (t[stop:] - hold.end) / hold.flight
+            position[stop:] = _thrown(position[stop], np.asarray(hold.place), u, hold.flight)
             continue
         k = SIDE[hold.hand]
         start = int(np.clip(np.searchsorted(t, hold.start), 0, frames - 1))

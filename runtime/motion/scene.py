@@ -56,9 +56,10 @@ class Scene:
             performer.gaze(self._pulls(name, eyes))
             self.tracks[name] = self._tracks(name)
             performer.stand()
+        order = self._arms_in_order()
         for name, performer in self.performers.items():
             performer.reach_body(self.tracks[name])
-        for name, performer in self._arms_in_order():
+        for name, performer in order:
             palms[name] = performer.arms(Contacts(self.tracks[name]))
             performer.face()
         hands = {n: p.figure for n, p in self.performers.items()}
@@ -70,10 +71,16 @@ class Scene:
                                        {n: p.goal_rotation for n, p in self.performers.items()})  # fmt: skip
 
     def _arms_in_order(self) -> list[tuple[str, Performer]]:
-        """Who takes the other by the hand comes after them."""
+        """Who takes the other by the arm comes after them; until then it hangs as it does by itself."""
         follows = {
-            n: any(x.place_of == "partner.hand" for x in tracks.layers) for n, tracks in self.tracks.items()
+            n: any(x.place_of in ("partner.hand", "partner.elbow") for x in tracks.layers)
+            for n, tracks in self.tracks.items()
         }
+        if any(follows.values()):
+            for name, performer in self.performers.items():
+                if not follows[name]:
+                    performer.reach_body(self.tracks[name])
+                performer.arms(Contacts(self.tracks[name]))
         return sorted(self.performers.items(), key=lambda item: follows[item[0]])
 
     # -- gaze ------------------------------------------------------------------------------
@@ -329,10 +336,12 @@ def _holds(plans: dict[str, Plan], props: dict[int, PropState]) -> dict[int, lis
         if event.object not in props or props[event.object].hinge is not None or nobody:
             continue
         mine = holds.setdefault(event.object, [])
-        if mine:
+        if mine and event.kind != "send":
             last = mine[-1]
             mine[-1] = Hold(last.person, last.hand, last.start, event.time, event.place, event.flight)
-        if event.kind == "take":
+        if event.kind == "send":
+            mine.append(Hold(event.person, "", event.time, event.time, event.place, event.flight))
+        elif event.kind == "take":
             mine.append(Hold(event.person, event.hand, event.time, 1e9, None))
         elif event.receiver is not None:
             caught = event.time + event.flight

@@ -172,7 +172,7 @@ class Reach:
 @dataclass(frozen=True)
 class Grasp:
     """At ``time`` the hand takes (``take``), lets go of (``put``) or hands over (``pass``) or
-    throws (``throw``) a thing."""
+    throws (``throw``) a thing; ``send``: the target flies off from where it lies, as kicked."""
 
     kind: str
     hand: str

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-from motion.scenes import FPS, at, person, thing
 
+from motion.scenes import FPS, at, person, thing
 from runtime.motion.perform import perform
 from runtime.motion.types import ActionClip, Grasp, SceneMotion, TargetPoint, Task, Timeline, Variant
 
@@ -42,7 +42,8 @@ def test_it_falls_freely_on_the_way() -> None:
 
 def test_thrown_at_nobody_it_comes_to_the_floor() -> None:
     way = thrown(None).props[1][:, :3, 3]
-    assert way[-1, 2] < 0.01 and way[-1, 0] > 2.0
+    assert way[-1, 2] < 0.01
+    assert way[-1, 0] > 2.0
 
 
 def test_the_other_person_catches_it() -> None:
@@ -51,3 +52,14 @@ def test_the_other_person_catches_it() -> None:
     assert motion.end_actors["anna"].held == ()
     step = np.linalg.norm(np.diff(motion.props[1][:, :3, 3], axis=0), axis=1) * FPS
     assert step.max() < 9.0  # no leap at the catch
+
+
+def test_what_is_sent_off_leaves_from_where_it_lies() -> None:
+    kick = ActionClip("kick", (Variant("plain", 1.0, Timeline(grasps=(Grasp("send", "near", 0.5),))),))
+    task = Task(kick, target=at(0.4, 0.0, 0.0, object=1), second=at(4.0, 0.0, 0.0, character="ben"))
+    actors = {"anna": person(), "ben": person(x=4.0, heading=np.pi)}
+    motion = perform(actors, {"anna": task}, {1: thing(0.4, 0.0, 0.0)}, FPS, 1)
+    way = motion.props[1][:, :3, 3]
+    assert np.allclose(way[0], (0.4, 0.0, 0.0), atol=1e-6)
+    assert np.allclose(way[-1], (3.5, 0.0, 0.0), atol=0.02)
+    assert way[:, 2].max() > 0.05

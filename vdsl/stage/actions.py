@@ -31,7 +31,7 @@ from vdsl.lang.definitions.timeline import POSED, Key, Move, Part
 
 from .models import file_motion
 
-GRASPS = ("take", "put", "pass", "throw")
+GRASPS = ("take", "put", "pass", "throw", "send")
 
 
 def build_clip(action: ActionDef) -> ActionClip:

@@ -54,7 +54,7 @@ POSED: dict[str, dict[str, float]] = {
 }
 LATERAL = frozenset({"body.side", "body.twist", "head.turn", "head.tilt", "eyes.turn", "hips.shift",
                      "hips.turn"})  # fmt: skip
-MOVES = ("at", "beat", "reach", "take", "put", "pass", "throw", "tip", "gaze", "talk", "step", "jump",
+MOVES = ("at", "beat", "reach", "take", "put", "pass", "throw", "send", "tip", "gaze", "talk", "step", "jump",
          "drive")  # fmt: skip
 #: Moves in which numbers change their sign when an action is mirrored: their places.
 _MIRRORED = {"step": (2,), "jump": (2, 3)}
@@ -73,8 +73,8 @@ class Key:
 class Move:
     """Anything with a span in time: ``kind`` is one of :data:`MOVES`, without ``at``.
 
-    times: rising shares of the clip; one for take, put, pass and throw, four for reach and tip (leaves, is
-        there, leaves again, is back), two for the others
+    times: rising shares of the clip; one for take, put, pass, throw and send, four for reach and tip (leaves,
+        is there, leaves again, is back), two for the others
     words: what it is about: channel / hand, place, palm and lead / hand / place;
         numbers: amplitude, count … by kind
     """
@@ -190,6 +190,8 @@ def _move(reader: Reader, kind: str, duration: float, report: Report) -> Move | 
     def when(name: str, default: float) -> float:
         return _option_time(reader, name, duration, default)
 
+    if kind == "send":
+        return Move(kind, (when("at", 0.5),), ("near",))
     if kind in ("take", "put", "pass", "throw"):
         return Move(kind, (when("at", 0.5),), (reader.value_word(0, "near", HANDS),))
     if kind == "gaze":

@@ -7,6 +7,8 @@ other people do in the one before.
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -125,11 +127,11 @@ class Performer:
         moving = np.clip(self.pace / 1.2, 0, 1)
         bow = c["body.bow"] + 0.13 * self.run + 0.03 * moving
         transition = self._sit_lean()
-        pitch = 0.45 * lean + bow + 0.5 * transition - 0.05 * self.sitting + 0.4 * style.lean * upright
+        pitch = 0.45 * lean + bow + 0.5 * transition - 0.05 * self.sitting + 0.15 * style.lean * upright
         accelerate = np.clip(0.03 * self.push, -0.08, 0.12)
         spine_lean = (
             0.55 * lean + c["body.lean"] + 0.5 * transition + accelerate + 0.05 * self.run
-            + 0.012 * self.breath + 0.03 * self.sitting + self.feeling["lean"] + 0.6 * style.lean * upright
+            + 0.012 * self.breath + 0.03 * self.sitting + self.feeling["lean"] + 0.85 * style.lean * upright
         )  # fmt: skip
         self.bent = smooth(np.clip(pitch + spine_lean - 0.08, 0.0, 1.2), 0.06 * self.fps)
         bowed = 0.75 * (pitch + spine_lean)
@@ -184,7 +186,8 @@ class Performer:
 
     def _ankles(self) -> tuple[Array, Array]:
         c = self.channels
-        ankle, toes = ankle_positions(self.skeleton, self.feet)
+        pitch = self.feet.pitch + c.pair("foot", "pitch")
+        ankle, toes = ankle_positions(self.skeleton, replace(self.feet, pitch=pitch))
         ahead, out, lift = (c.pair("foot", axis) for axis in ("forward", "out", "lift"))
         cos, sin = np.cos(self.yaw), np.sin(self.yaw)
         out = MIRROR * out
@@ -327,7 +330,7 @@ class Performer:
         down_to = tracks.position(self.figure)[..., 2] - self.ground
         crouch = np.clip((0.40 - down_to / self.height) / 0.2, 0.0, 0.85) * tracks.pull
         crouch = smooth(crouch.max(axis=0), 0.1 * self.fps) * (1 - self.sitting) * (1 - self.low.share)
-        for _ in range(3):
+        for _ in range(4):
             gap = self._shortage(tracks)
             if gap.max() < 1e-3:
                 return
@@ -338,8 +341,8 @@ class Performer:
             length = np.maximum(norm(d), 1e-6)
             ahead = (gap * np.clip(flat / length, 0.0, 1.0)).max(axis=0)
             down = (gap * np.clip(-d[..., 2] / length, 0.0, 1.0)).max(axis=0)
-            more = smooth(np.stack([ahead, down], axis=1), 0.10 * self.fps)
-            ahead, down = more[:, 0], more[:, 1]
+            reach = max(1, round(0.1 * self.fps))
+            ahead, down = -below(-ahead, reach), -below(-down, reach)
             lower = np.minimum(down * crouch, np.maximum(0.32 * self.height - drop, 0.0))
             hips = 0.30 * self.height  # from there to the shoulders
             lean = np.minimum(lean + (1.1 * ahead + 1.0 * (down - lower)) / hips, 1.1)

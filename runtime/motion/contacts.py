@@ -206,7 +206,8 @@ class HandTracks:
             k, w = layer.hand, layer.weight
             self.weight[k] = w + self.weight[k] * (1 - w)
             # places on the own body go with it: leaning would only chase them
-            self.pull[k] = w * (layer.place_of in ("", "floor")) + self.pull[k] * (1 - w)
+            draws = layer.place_of in ("", "floor") or layer.other is not None
+            self.pull[k] = w * draws + self.pull[k] * (1 - w)
             total = w + self.turning[k] * (1 - w)
             share = w / np.maximum(total, 1e-6)
             for track, angle in zip((self.inward, self.pitch, roll), layer.angles, strict=True):

@@ -15,7 +15,7 @@ from .types import Talk
 
 Array = NDArray[np.float64]
 #: How far eyes, head and chest turn, radians.
-EYE_TURN, EYE_DOWN, HEAD_TURN, HEAD_NOD = 0.62, 0.52, 1.15, 0.65
+EYE_TURN, EYE_DOWN, HEAD_TURN, HEAD_NOD = 0.62, 0.52, 1.25, 0.95
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,8 +65,10 @@ def look(pulls: list[GazePull], frames: int, fps: float) -> Look:
         down = down + pull.weight * (pull.down - down)
         share = share + pull.weight * (pull.share - share)
     turn = np.clip(turn, -1.95, 1.95)
-    head = delayed(smooth(_soft(turn * share, HEAD_TURN), 0.11 * fps), 0.09 * fps)
-    nod = delayed(smooth(_soft(down * share * 0.9, HEAD_NOD), 0.11 * fps), 0.09 * fps)
+    beyond = np.clip((np.abs(turn) - 1.7) / 0.2, 0.0, 1.0) + np.clip((np.abs(down) - 1.25) / 0.2, 0.0, 1.0)
+    fixed = fixed * (1.0 - np.clip(beyond, 0.0, 1.0))
+    head = delayed(smooth(_share(turn, share, EYE_TURN, HEAD_TURN), 0.11 * fps), 0.09 * fps)
+    nod = delayed(smooth(_share(down, 0.9 * share, EYE_DOWN, HEAD_NOD), 0.11 * fps), 0.09 * fps)
     far = np.sign(turn) * np.maximum(np.abs(turn) - 0.55, 0.0)
     chest = delayed(smooth(np.clip(0.42 * far, -0.5, 0.5), 0.16 * fps), 0.2 * fps)
     eyes = smooth(np.stack([turn, down], axis=1), 0.03 * fps)
@@ -97,8 +99,10 @@ def _limited(x: Array, limit: float) -> Array:
     return np.asarray(np.sign(x) * eased)
 
 
-def _soft(x: Array, limit: float) -> Array:
-    return np.asarray(limit * np.tanh(x / limit))
+def _share(angle: Array, share: Array, eyes: float, limit: float) -> Array:
+    """What the head does of an angle: its share, more where the eyes alone could not do the rest."""
+    size = np.abs(angle)
+    return _limited(np.sign(angle) * np.maximum(size * share, size - 0.75 * eyes), limit)
 
 
 def blinks(t: Array, rng: np.random.Generator) -> Array:

@@ -232,10 +232,10 @@ class Figure:
         offset, axis = self.hands.offset, self._forearm_frames[:, :, 0]
         goal_wrist = goals.position - turned(goals.rotation, offset)
         arc = turned(heading[None], np.stack([[[0.75, m * 0.45, 0.0]] for m in (1.0, -1.0)]))
-        for _ in range(3 if goals.weight.any() else 1):
+        for _ in range(5 if goals.weight.any() else 1):
             way = goal_wrist - wrist_fk
             target = wrist_fk + w * way + (0.7 * w * (1 - w) * norm(way)[..., None]) * arc
-            limb = two_bone(root, target, self._upper, self._lower, pole)
+            limb = two_bone(root, target, self._upper, self._lower, pole, fold=2.72)
             fore = bone_rotation(limb.end - limb.middle, limb.hinge, self._forearm_frames)
             relative = _wrists(fore, fk_relative, goals, axis)
             hand = fore @ relative
@@ -346,10 +346,10 @@ def rotation_vector_twist(matrix: Array, axis: Array) -> Array:
 
 
 def _within_limits(relative: Array, axis: Array) -> Array:
-    """Wrist rotations eased into what a wrist can do: 1.75 rad of turn, 1.15 rad of bend."""
+    """Wrist rotations eased into what a wrist can do: 1.75 rad of turn, 1.3 rad of bend."""
     twist = steady(rotation_vector_twist(relative, axis))
     swing = rotation_vector(relative @ np.swapaxes(rotation(twist), -1, -2))
-    return rotation(_soft_limit(swing, 1.15)) @ rotation(_soft_limit(twist, 1.75))
+    return rotation(_soft_limit(swing, 1.3)) @ rotation(_soft_limit(twist, 1.75))
 
 
 def _soft_limit(vector: Array, limit: float) -> Array:

@@ -38,7 +38,7 @@ GAITS = {
     "walk": WALK,
     "run": Gait("run", 0.61, 0.335, 1.36, 0.7, 1.0),
     "skip": Gait("skip", 0.34, 0.33, 0.0, 0.6, 0.6),
-    "crawl": Gait("crawl", 0.17, 0.55, 0.85, 0.5),
+    "crawl": Gait("crawl", 0.15, 0.5, 0.85, 0.5),
 }
 
 

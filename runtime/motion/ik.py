@@ -36,18 +36,26 @@ def soft_length(distance: Array, full: Array | float, start: float = 0.965, stop
 
 
 def two_bone(
-    root: Array, target: Array, upper: Array | float, lower: Array | float, pole: Array, soft: bool = True
+    root: Array,
+    target: Array,
+    upper: Array | float,
+    lower: Array | float,
+    pole: Array,
+    soft: bool = True,
+    fold: float = 2.8,
 ) -> Limb:
     """Reaches from ``root`` [..., 3] for ``target`` [..., 3] with bones of lengths ``upper``, ``lower``.
 
-    A target too far is approached in its direction. The middle joint never passes straight.
+    A target too far is approached in its direction. The middle joint never passes straight, and bends by
+    ``fold`` radians at most.
     """
     offset = target - root
     wished = norm(offset)
     axis = offset / np.maximum(wished, 1e-9)[..., None]
     full = np.asarray(upper + lower)
     reach = soft_length(wished, full) if soft else np.minimum(wished, full * 0.9999)
-    reach = np.maximum(reach, np.abs(np.asarray(upper - lower)) + 0.12 * full)
+    closed = np.sqrt(np.asarray(upper**2 + lower**2 + 2.0 * upper * lower * np.cos(fold)))
+    reach = np.maximum(reach, closed)
     cosine = np.clip((upper**2 + reach**2 - lower**2) / (2 * upper * reach), -1.0, 1.0)
     sine = np.sqrt(1.0 - cosine**2)
     side = across(pole, axis)

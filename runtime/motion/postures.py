@@ -85,7 +85,7 @@ def row(posture: str, skeleton: Skeleton) -> Row:
     down = (1.0, 0.0, -0.5)
     if posture == "crouching":
         foot = (0.0, 1.25 * wide, 0.5)
-        return Row(0.155 * h, 0.35, 0.35, -0.3, (foot, foot), ((1.0, 0.35, 0.4),) * 2, on="knee", splay=0.3)
+        return Row(0.17 * h, 0.35, 0.35, -0.3, (foot, foot), ((1.0, 0.35, 0.4),) * 2, on="knee", splay=0.3)
     if posture == "kneeling":
         foot = (behind, 1.1 * wide, tucked)
         return Row(knee + 0.995 * thigh, 0.02, 0.02, 0.0, (foot, foot), (down, down), swing=0.05)
@@ -117,6 +117,6 @@ def row(posture: str, skeleton: Skeleton) -> Row:
         raise ValueError(f"no such posture: {posture}")
     hip = knee + 0.995 * thigh
     foot = (behind, 1.05 * wide, tucked)
-    pitch = float(np.arccos(np.clip((0.94 * shoulder - hip) / trunk, -1.0, 1.0)))
+    pitch = float(np.arccos(np.clip((0.87 * shoulder - hip) / trunk, -1.0, 1.0)))
     ahead = trunk * float(np.sin(pitch))
-    return Row(hip, pitch - 0.12, 0.24, -0.45, (foot, foot), (down, down), (ahead, out, 0.022 * h))
+    return Row(hip, pitch - 0.12, 0.24, -0.7, (foot, foot), (down, down), (ahead, out, 0.022 * h))

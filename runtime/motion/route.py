@@ -344,7 +344,9 @@ class Route:
         """Goes as is laid down elsewhere: floor points [K, 3] and headings [K] at :data:`RATE`, and where the
         feet (x, y, yaw) stand when it is over."""
         for foot, place in enumerate(places):
-            self.steps.append(Step(foot, self.now, self.now + min(0.3, 0.5 * duration), place, ground=self.floor))
+            self.steps.append(
+                Step(foot, self.now, self.now + min(0.3, 0.5 * duration), place, ground=self.floor)
+            )
             self.feet_now[foot], self.pitch_now[foot] = place, 0.0
         self._push(xyz, yaw)
         self.now += duration

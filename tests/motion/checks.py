@@ -21,10 +21,10 @@ SLIDE, SINK, HAND, GAZE = 2.0, 1.0, 3.0, 10.0  # cm, cm, cm, degrees
 #: What people's joints do, degrees: (joint, axis) to lowest and highest. Elbows and knees by their bend,
 #: the others by the angle away from straight, or the turn about the upright.
 LIMITS: dict[str, tuple[float, float]] = {
-    "elbow": (-2, 152), "knee": (-2, 160), "neck turn": (-90, 90), "neck nod": (-75, 70),
+    "elbow": (-2, 158), "knee": (-2, 160), "neck turn": (-90, 90), "neck nod": (-75, 70),
     "neck tilt": (-50, 50),
     "spine lean": (-45, 95), "spine side": (-42, 42), "spine twist": (-60, 60), "upper arm": (0, 182),
-    "hip bend": (-40, 150),
+    "hip bend": (-45, 150),
 }  # fmt: skip
 BODY = 0.2  # metres: half a body's width, as paths keep clear of solid things
 
@@ -189,7 +189,8 @@ def _clearance(motion: SceneMotion, who: str, world: World) -> float:
     if len(solids.centre) == 0:
         return 10.0
     xy = motion.position[who][:, :2]
-    going = np.linalg.norm(np.gradient(xy, axis=0), axis=1) > 0.02
+    stepping = ~motion.touches[who].planted.all(axis=0)
+    going = stepping & (np.linalg.norm(np.gradient(xy, axis=0), axis=1) > 0.02)
     if not going.any():
         return 10.0
     feet = motion.position[who][:, 2]

@@ -201,7 +201,7 @@ def _replay(plan: Plan, capture: Capture, window: Window) -> None:
         fitted(capture, plan.actor.skeleton), window.start, window.duration, at, route.heading, route.floor
     )
     route.now = window.start
-    route.carry(*replay.way(RATE), window.duration, (replay.last_place(0), replay.last_place(1)))
+    route.carry(*replay.way(RATE), window.duration, replay.steps())
     plan.replays.append(replay)
 
 

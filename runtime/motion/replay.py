@@ -17,7 +17,7 @@ from scipy.ndimage import maximum_filter1d
 from runtime.body.skeleton import JOINT, PARENTS, Skeleton, forward_kinematics
 
 from .curves import ease, ramp, smooth
-from .feet import Feet, ankle_positions, rolled
+from .feet import Feet, Step, ankle_positions, rolled
 from .figure import SIDES, Figure
 from .rotations import blend, quaternion, rot_z, turned, unwrapped
 from .types import Capture
@@ -25,8 +25,9 @@ from .types import Capture
 Array = NDArray[np.float64]
 #: Seconds of blending from what was before, and to what comes after.
 BLEND_IN, BLEND_OUT = 0.45, 0.35
-#: A foot stands where its sole is this near the floor and this slow (metres, metres a second, at 1.7 m).
-NEAR, SLOW = 0.035, 0.5
+#: A foot stands where it is this slow and its sole this near the floor; nearer where it is not still, as
+#: captured feet rarely come down to the floor all the way (metres, metres a second, at 1.7 m).
+SLOW, NEAR, NEARER = 0.5, 0.075, 0.03
 #: Seconds: gaps between two standings of a foot that are none, and standings too short to be any.
 GAP, SHORT = 0.07, 0.09
 
@@ -80,9 +81,25 @@ class Replay:
         xyz[:, 2] = self.floor
         return xyz, self.heading + _between(self.fitted.yaw, *self.fitted.at(share))
 
-    def last_place(self, foot: int) -> tuple[float, float, float]:
-        """Where a foot stands (x, y, yaw) when it is over."""
-        x, y, yaw = self.fitted.place[foot, -1]
+    def steps(self) -> list[Step]:
+        """The steps the feet take, from standing as before to how they stand when it is over."""
+        out = []
+        frame = self.duration / (len(self.fitted.hips) - 1)
+        for foot in (0, 1):
+            lift = self.start
+            stands = runs(self.fitted.standing[foot])
+            for a, b in (*stands, (len(self.fitted.hips) - 1, len(self.fitted.hips))):
+                land = max(self.start + a * frame, lift + 0.1, self.start + 0.9 * BLEND_IN)
+                land = min(land, self.start + self.duration)
+                if land - lift < 0.05:
+                    continue
+                out.append(Step(foot, lift, land, self._foot(foot, a), ground=self.floor))
+                lift = max(land, self.start + b * frame)
+        return out
+
+    def _foot(self, foot: int, frame: int) -> tuple[float, float, float]:
+        """Where a foot is (x, y, yaw) at a frame of the capture."""
+        x, y, yaw = self.fitted.place[foot, frame]
         at = self.placed(np.array([[x, y, 0.0]]))[0]
         return (float(at[0]), float(at[1]), float(yaw + self.heading))
 
@@ -159,7 +176,8 @@ def _standing(place: Array, lift: Array, fps: float, scale: float) -> NDArray[np
     """[N]: low and slow, without gaps and moments that are none."""
     speed = np.linalg.norm(np.gradient(place[:, :2], axis=0), axis=1) * fps
     speed = smooth(speed, 0.03 * fps)
-    low = (lift < NEAR * scale) & (speed < SLOW * scale)
+    still = np.clip(1.0 - speed / (0.7 * SLOW * scale), 0.0, 1.0)
+    low = (lift < (NEARER + (NEAR - NEARER) * still) * scale) & (speed < SLOW * scale)
     for value, seconds in ((False, GAP), (True, SHORT)):
         for a, b in runs(low == value):
             inside = a > 0 and b < len(low)

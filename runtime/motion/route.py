@@ -340,14 +340,11 @@ class Route:
         self.flights.append(Flight(start, end, height))
         self._move(start - 0.06, end + 0.04, by, jump.turn)
 
-    def carry(self, xyz: Array, yaw: Array, duration: float, places: tuple[Triple, Triple]) -> None:
-        """Goes as is laid down elsewhere: floor points [K, 3] and headings [K] at :data:`RATE`, and where the
-        feet (x, y, yaw) stand when it is over."""
-        for foot, place in enumerate(places):
-            self.steps.append(
-                Step(foot, self.now, self.now + min(0.3, 0.5 * duration), place, ground=self.floor)
-            )
-            self.feet_now[foot], self.pitch_now[foot] = place, 0.0
+    def carry(self, xyz: Array, yaw: Array, duration: float, steps: list[Step]) -> None:
+        """Goes as is laid down elsewhere: floor points [K, 3] and headings [K] at :data:`RATE`, and steps."""
+        for step in steps:
+            self.steps.append(step)
+            self.feet_now[step.foot], self.pitch_now[step.foot] = step.place, 0.0
         self._push(xyz, yaw)
         self.now += duration
         self.at, self.heading = xyz[-1].copy(), float(yaw[-1])

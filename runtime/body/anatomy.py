@@ -24,6 +24,12 @@ TORSO_FRAME = np.array([[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
 FOOT_FRAME = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, 1.0, 0.0]])
 
 
+#: What large surfaces may have in triangles, and what the words of a spec add to that.
+BUDGET = 8000
+_WORN = ("hair", "facial_hair", "top", "bottom", "shoes", "hat", "neck", "over", "back")
+_LOADS: dict[str, int] = {}
+
+
 @dataclass(frozen=True)
 class Figure:
     """One person's measures at hand: spec, proportions, skeleton."""
@@ -51,6 +57,12 @@ class Figure:
     def fem(self) -> float:
         """Grown-up femininity: children are shaped alike."""
         return self.spec.femininity * (1.0 - self.spec.youth)
+
+    @cached_property
+    def detail(self) -> float:
+        """How finely large surfaces are made, about 0.6 .. 1: less where much is worn, to stay within the
+        triangles a person may have."""
+        return min(1.0, BUDGET / (BUDGET + sum(_LOADS.get(getattr(self.spec, k), 0) for k in _WORN)))
 
     def level(self, share: float) -> float:
         """Height of a level of the torso: 0 is the hip joint, 1 the shoulder joint."""

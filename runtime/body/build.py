@@ -8,7 +8,7 @@ from __future__ import annotations
 import hashlib
 import os
 import tempfile
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -17,19 +17,21 @@ from platformdirs import user_cache_path
 
 from ..mesh import MATERIALS, Mesh
 from .anatomy import Figure
+from .extras import extras
 from .features import head_pieces, limb_pieces
-from .field import gradient
+from .field import Field, gradient
 from .head import Head
 from .legwear import bare_legs, bottom, shoes
-from .outfit import top
 from .pieces import PARTS, Piece, other_side, tucked
 from .skeleton import PALETTE, Skeleton
 from .spec import BodySpec
-from .surface import Patch
+from .surface import Patch, cull
+from .wardrobe import top
 from .weights import (
     beard_weights,
     body_weights,
     brow_weights,
+    cape_weights,
     face_weights,
     mouth_weights,
     rigid,
@@ -38,7 +40,7 @@ from .weights import (
 )
 
 #: Raised with every change of shape, so that old cache files are not read.
-VERSION = 7
+VERSION = 8
 
 
 @dataclass(frozen=True, eq=False)
@@ -99,8 +101,22 @@ def _pieces(figure: Figure) -> list[Piece]:
     cover = upper[0].solid
     under = [*head_pieces(figure), *limb_pieces(figure), *bottom(figure)]
     if cover is not None:
-        under = [tucked(p, cover) if p.tucks else p for p in under]
-    return [*under, *upper, *shoes(figure), *bare_legs(figure)]
+        under = [_kept_under(figure, p, cover) if p.tucks else p for p in under]
+    return [*under, *upper, *extras(figure, upper), *shoes(figure), *bare_legs(figure)]
+
+
+def _kept_under(figure: Figure, piece: Piece, cover: Field) -> Piece:
+    """What is worn under the top: drawn in below it, and left out where it could never be seen."""
+    inner = tucked(piece, cover)
+    if piece.part != "bottom":
+        return inner
+    line = _hem(figure) + 0.05 * figure.p.height
+    return replace(inner, patch=cull(inner.patch, lambda p: np.maximum(cover(p), line - p[:, 2]), 0.004))
+
+
+def _hem(figure: Figure) -> float:
+    """About the lowest edge of tops worn over a bottom."""
+    return figure.level(0.02)
 
 
 def _finish(
@@ -180,6 +196,8 @@ def _weights(figure: Figure, piece: Piece, normals: NDArray[np.float64]) -> NDAr
         return body_weights(figure, points, normals=normals)
     if piece.rule == "legs":
         return body_weights(figure, points, arms=False)
+    if piece.rule == "cape":
+        return cape_weights(figure, points)
     if piece.rule == "skirt":
         return body_weights(figure, points, side_blend=0.09, normals=normals)
     own = {

@@ -48,18 +48,28 @@ def limb_pieces(f: Figure) -> list[Piece]:
     solid = arm(f)
     h, reach = f.p.height, f.p.upper_arm + f.p.forearm + 1.1 * f.p.hand
     origin = f.joint("upperarm_l")
-    long_sleeves = f.spec.top in ("shirt", "sweater", "blazer", "coat")
+    long_sleeves = f.spec.top not in ("tshirt", "tank", "scrubs", "dress", "gown")
     start = (f.p.upper_arm + f.p.forearm) * 0.90 if long_sleeves else 0.22 * f.p.upper_arm
     local: Field = lambda q: solid(q @ ARM_FRAME + origin)  # noqa: E731
     patch = polygonise(local, (start, -0.065 * h, -0.06 * h), (reach, 0.065 * h, 0.06 * h), 0.0033 * h / 1.7)
     wrist = f.p.upper_arm + f.p.forearm
     focus = Focus((wrist + 0.55 * f.p.hand, 0.0, 0.0), 0.6 * f.p.hand, 2.2)
-    patch = simplify(patch, 520 if long_sleeves else 800, local, focus)
+    patch = simplify(patch, round((500 if long_sleeves else 760) * f.detail), local, focus)
     patch = Patch(
         patch.vertices @ ARM_FRAME + origin,
         patch.faces[:, ::-1] if np.linalg.det(ARM_FRAME) < 0 else patch.faces,
     )
-    return [Piece(patch, f.spec.skin, "skin", solid, symmetry="side")]
+    piece = Piece(patch, f.spec.skin, "skin", solid, symmetry="side")
+    return _gloved(f, piece) if f.spec.gloves else [piece]
+
+
+def _gloved(f: Figure, piece: Piece) -> list[Piece]:
+    """Hands in gloves that reach over the wrist."""
+    hard = f.spec.top in ("armour", "spacesuit")
+    colour = shade(f.spec.top_color, 0.85) if hard else f.spec.accent_color
+    origin = f.joint("upperarm_l")
+    line = f.p.upper_arm + 0.90 * f.p.forearm
+    return parted(piece, lambda p: line - (p - origin) @ ARM_FRAME[0], colour, "gloves")
 
 
 def _skin(head: Head) -> list[Piece]:
@@ -69,7 +79,7 @@ def _skin(head: Head) -> list[Piece]:
     patch = polygonise(solid, low, high, 0.0150 * u)
     centre = o + np.array([0.30, 0.10, 0.34]) * u
     focus = Focus((float(centre[0]), float(centre[1]), float(centre[2])), 0.24 * u, 3.6)
-    patch = half(simplify(patch, 1850, solid, focus))
+    patch = half(simplify(patch, round(1500 * f.detail), solid, focus))
     cover = hair_cover(head)
     if cover is not None:
         patch = cull(patch, cover, 0.012 * u)

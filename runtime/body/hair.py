@@ -53,7 +53,7 @@ def _bob(head: Head) -> list[Piece]:
             (-0.66, -0.6, -0.02),
             (0.62, 0.6, 1.2),
             None,
-            1400,
+            1150,
             symmetric=False,
         )
     ]

@@ -60,7 +60,7 @@ def combed_back(head: Head, thick: float = 0.030) -> Piece:
 def braids(head: Head) -> list[Piece]:
     """Two plaits in front of the shoulders, hair parted in the middle."""
     t = np.linspace(0.0, 1.0, 15)
-    line = np.stack([-0.17 + 0.32 * t - 0.10 * t**2, 0.30 + 0.13 * np.sin(1.9 * t), 0.30 - 0.98 * t], 1)
+    line = np.stack([-0.10 + 0.42 * t - 0.12 * t**2, 0.325 + 0.05 * np.sin(1.9 * t), 0.34 - 1.0 * t], 1)
     size = (0.062 + 0.014 * np.cos(np.pi * 14 * t)) * (1.0 - 0.35 * t)
     size[-1] = 0.02
     plait = strand(line, size.tolist(), 7)
@@ -142,7 +142,7 @@ def curls(head: Head, shape: Field, cut: Field, depth: float, wave: float, faces
     valley = shape(middle) < -0.10 * depth
     colour = head.figure.spec.hair_color
     light = 0.3 * colour[0] + 0.6 * colour[1] + 0.1 * colour[2]
-    other = shade(colour, 0.72) if light > 0.25 else shade(colour, 1.10)
+    other = shade(colour, 0.84) if light > 0.25 else shade(colour, 1.07)
     if light <= 0.25:
         valley = ~valley
     return [

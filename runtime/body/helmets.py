@@ -27,7 +27,11 @@ def _shell(
 ) -> Piece:
     solid = head.field(shape)
     patch = half(
-        simplify(polygonise(solid, head.metres(low), head.metres(high), 0.026 * head.unit), faces, solid)
+        simplify(
+            polygonise(solid, head.metres(low), head.metres(high), 0.026 * head.unit),
+            round(head.figure.detail * faces),
+            solid,
+        )
     )
     return Piece(patch, colour, "hat", solid, rule=rule, material="cloth" if rule == "face" else "plain")
 

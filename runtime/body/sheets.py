@@ -163,10 +163,14 @@ def laid(solid: Field, points: Grid, lift: float) -> Grid:
 
 
 def cast(solid: Field, start: Points, way: ArrayLike, reach: float) -> Points:
-    """Where rays from outside, [N, 3] along ``way`` for ``reach`` metres, first enter a solid (about)."""
-    direction = np.asarray(way, float) / np.linalg.norm(np.asarray(way, float))
+    """Where rays from outside first enter a solid (about): [N, 3] along ``way`` ([3] or [N, 3]), ``reach``
+    metres long."""
+    direction = np.broadcast_to(np.asarray(way, float), start.shape)
+    direction = direction / np.linalg.norm(direction, axis=1, keepdims=True)
     steps = np.linspace(0.0, reach, 28)
-    each = solid((start[:, None] + steps[:, None] * direction).reshape(-1, 3)).reshape(len(start), -1)
+    each = solid((start[:, None] + steps[:, None] * direction[:, None]).reshape(-1, 3)).reshape(
+        len(start), -1
+    )
     inside = each < 0
     hit = np.where(inside.any(1), np.argmax(inside, axis=1), len(steps) - 1)
     high = steps[hit]

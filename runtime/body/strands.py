@@ -84,7 +84,7 @@ def hair_piece(
     solid = head.field(shape)
     start = (low[0], -0.05 if symmetric else low[1], low[2])
     patch = polygonise(solid, head.metres(np.array(start)), head.metres(np.array(high)), 0.022 * u)
-    patch = simplify(patch, faces, solid)
+    patch = simplify(patch, round(head.figure.detail * faces), solid)
     if symmetric:
         patch = half(patch)
     if cut is not None:

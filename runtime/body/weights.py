@@ -117,6 +117,25 @@ def tooth_weights(figure: Figure, points: Points) -> NDArray[np.float64]:
     return w
 
 
+def cape_weights(figure: Figure, points: Points) -> NDArray[np.float64]:
+    """What hangs from the shoulders down the back: with chest and hips, swinging a little with the thighs."""
+    z = points[:, 2]
+    high = ramp(z, figure.level(0.55), figure.level(0.95))
+    low = ramp(-z, -figure.level(0.45), -figure.level(0.0))
+    swing = 0.30 * ramp(-z, -figure.p.hip[1], -figure.p.knee)
+    left = 0.5 + 0.5 * np.clip(points[:, 1] / (0.12 * figure.p.height), -1.0, 1.0)
+    w = np.zeros((len(points), len(PALETTE)))
+    w[:, _COLUMN["chest"]] = (1 - low) * (0.4 + 0.6 * high)
+    w[:, _COLUMN["spine"]] = (1 - low) * 0.6 * (1 - high)
+    w[:, _COLUMN["hips"]] = low * (1 - swing)
+    w[:, _COLUMN["thigh_l"]], w[:, _COLUMN["thigh_r"]] = low * swing * left, low * swing * (1 - left)
+    clavicle = 0.5 * high * ramp(np.abs(points[:, 1]), 0.04 * figure.p.height, 0.10 * figure.p.height)
+    w[:, _COLUMN["clavicle_l"]] = np.where(points[:, 1] > 0, clavicle, 0.0) * w[:, _COLUMN["chest"]]
+    w[:, _COLUMN["clavicle_r"]] = np.where(points[:, 1] < 0, clavicle, 0.0) * w[:, _COLUMN["chest"]]
+    w[:, _COLUMN["chest"]] *= 1 - clavicle
+    return w
+
+
 def rigid(name: str, count: int) -> NDArray[np.float64]:
     """Weights of points that hang on one joint alone."""
     w = np.zeros((count, len(PALETTE)))
@@ -201,7 +220,8 @@ def _arm(f: Figure, p: Points, normals: Points | None) -> tuple[dict[str, Values
     h, a, b, k = f.p.height, f.p.upper_arm, f.p.forearm, f.p.hand
     d = p - f.joint("upperarm_l")
     u, v, w = (d @ ARM_FRAME.T).T
-    near = 1.0 - ramp(np.hypot(v, w), 0.064 * h, 0.094 * h)
+    room = 0.055 * h * ramp(u, 0.6 * a, a + 0.5 * b)  # wide sleeves, where the arm is clear of the trunk
+    near = 1.0 - ramp(np.hypot(v, w) - room, 0.064 * h, 0.094 * h)
     if normals is not None:
         towards = normals @ ARM_FRAME[2]
         flank = ramp(towards, -0.20, 0.35) * ramp(-w, 0.002 * h, 0.016 * h) * ramp(u, 0.03 * h, 0.06 * h)

@@ -20,6 +20,7 @@ from .ir import Beat, Target
 from .scope import Scope
 
 _MOST_ACTION_WORDS = 4
+_MOST_LISTED = 30
 #: `pour jug into glass` and `pour glass from jug` are one: what is in the hand is the second target.
 _INTO = ("to", "in", "into", "on", "onto")
 _KIND_WORDS = {"place": "a place", "object": "a thing", "character": "someone"}
@@ -64,6 +65,8 @@ class BeatReader:
         if len(named) == 2 and link in _INTO and getattr(definition, "needs", "none") == "second":
             named = [named[1], named[0]]
         first, second = (*named, None, None)[:2]
+        if second is None and _works_with(definition, rest):
+            first, second = None, first
         for target in named:
             if target.kind == "character" and target.path[0] == character:
                 self.report.error("VDS075", target.span, label=f"{character} cannot do this to themselves")
@@ -109,11 +112,17 @@ class BeatReader:
             "VDS071",
             rest[0].span,
             label=f"no action is called `{rest[0].text}`",
-            help=f"actions are {listing(self.catalog.names('action'), 40, last='and')}",
+            help=self._actions_in_words(),
             suggestion=meant,
             fix=meant,
         )
         return None, 0
+
+    def _actions_in_words(self) -> str:
+        names = self.catalog.names("action")
+        if len(names) > _MOST_LISTED:
+            return f"`vdsc assets actions` lists the {len(names)} there are, `--search WORDS` finds one"
+        return f"actions are {listing(names, 40, last='and')}"
 
     # -- to what ---------------------------------------------------------------------
 
@@ -247,6 +256,17 @@ def unknown_character(word: ast.Name, characters: tuple[str, ...], report: Repor
         help=help,
         suggestion=meant,
         fix=meant,
+    )
+
+
+def _works_with(definition: DefinitionBase, rest: tuple[ast.Name, ...]) -> bool:
+    """Whether what stands after the action is only what it is done with: ``sweep with broom``."""
+    optional = getattr(definition, "target", "none") == "optional"
+    return (
+        optional
+        and getattr(definition, "needs", "none") == "second"
+        and rest[:1] != ()
+        and rest[0].text == "with"
     )
 
 

@@ -40,11 +40,15 @@ class Catalog:
         self._read: dict[tuple[str, str], DefinitionBase | None] = {}
 
     @classmethod
-    def for_script(cls, script: ast.Script, report: Report) -> Catalog:
-        """The catalog a script sees. Its own definitions are all read, so that all their mistakes show."""
+    def for_script(cls, script: ast.Script, report: Report, also: ast.Script | None = None) -> Catalog:
+        """The catalog a script sees. Its own definitions are all read, so that all their mistakes show.
+
+        also: another script whose definitions it sees, but not its characters and scenes
+        """
         catalog = cls(report)
-        catalog._folder = Path(script.source.name).parent
-        for each in (script, *used_scripts(script, report)):
+        catalog._folder = Path((also or script).source.name).parent
+        others = (also, *used_scripts(also, report)) if also is not None else ()
+        for each in (script, *used_scripts(script, report), *others):
             catalog._add(each)
         for kind, name in catalog._own:
             catalog._check_own(kind, catalog.get(kind, name))

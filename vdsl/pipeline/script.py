@@ -47,11 +47,17 @@ def load_storyboard(path: Path, overrides: Settings | None = None) -> Checked:
     return check_source(source, report, overrides)
 
 
-def check_source(source: Source, report: Report | None = None, overrides: Settings | None = None) -> Checked:
-    """The same from text in memory."""
+def check_source(
+    source: Source,
+    report: Report | None = None,
+    overrides: Settings | None = None,
+    definitions: Path | None = None,
+) -> Checked:
+    """The same from text in memory; definitions: a script whose definitions it may use."""
     report = Report() if report is None else report
     script, _ = parse(source, report)
-    catalog = Catalog.for_script(script, report)
+    also = read_source(definitions, report) if definitions is not None else None
+    catalog = Catalog.for_script(script, report, parse(also, report)[0] if also is not None else None)
     storyboard = check(script, catalog, report, overrides)
     if storyboard is None:
         raise ScriptError(report)

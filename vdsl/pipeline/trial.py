@@ -160,11 +160,8 @@ def stage_script(text: str, name: str, own: Path | None = None) -> Act:
 
 def _checked(text: str, name: str, own: Path | None) -> Checked:
     report = Report()
-    if own is not None:
-        text = text.replace("\n", f'\nuse "{own.name}"\n', 1)
-        name = str(own.with_name("trial"))
     try:
-        return check_source(Source(name, text), report)
+        return check_source(Source(name, text), report, definitions=own)
     except ScriptError as error:
         raise NoTrialError(_told(name, report)) from error
 

@@ -121,7 +121,7 @@ class BeatReader:
     def _actions_in_words(self) -> str:
         names = self.catalog.names("action")
         if len(names) > _MOST_LISTED:
-            return f"`vdsc assets actions` lists the {len(names)} there are, `--search WORDS` finds one"
+            return "`vdsc assets actions` lists them all, `--search WORDS` finds one"
         return f"actions are {listing(names, 40, last='and')}"
 
     # -- to what ---------------------------------------------------------------------

@@ -14,9 +14,9 @@ from ..lang.definitions.set import SetDef
 from ..lang.ir import Character, Scene, StoryLine
 from ..library import Catalog
 from ..stage.assemble import StagedScene, assemble
+from ..stage.cache import load_world
 from ..stage.cast import body_spec
 from ..stage.models import file_person
-from ..stage.world import build_world
 
 
 class Stagehand:
@@ -46,7 +46,7 @@ class Stagehand:
         if key not in self._worlds:
             definition = self._catalog.get("set", scene.set)
             assert isinstance(definition, SetDef), scene.set
-            self._worlds[key] = build_world(definition, self._catalog, scene.time, scene.room)
+            self._worlds[key] = load_world(definition, self._catalog, scene.time, scene.room)
         return self._worlds[key]
 
     def body(self, character: Character) -> Body:

@@ -378,7 +378,7 @@ def _unreachable(
 
 
 def _blockers(state: SceneState, blocking: list[int], target: Target) -> list[str]:
-    """Names of what stands in the way: parts by what they belong to, walls as such, the target itself aside."""
+    """Names of what stands in the way: parts by what they belong to, walls as such; not the target itself."""
     names = []
     for i in blocking:
         item = state.world.objects[i] if i >= 0 else None

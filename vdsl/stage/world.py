@@ -18,8 +18,9 @@ from runtime.raster.types import ONE_SIDED
 from runtime.shapes import painted
 from runtime.world import Hinge, Level, Rect, Solids, Spot, Stairs, Wall, World, WorldObject
 
+from ..lang.definitions.files import FileSetDef
 from ..lang.definitions.levels import Flight, Platform
-from ..lang.definitions.prop import PropPart, PropShape, PropSpot
+from ..lang.definitions.prop import PropDef, PropPart, PropShape, PropSpot
 from ..lang.definitions.set import (
     WALL_THICKNESS,
     Opening,
@@ -47,7 +48,8 @@ from .floors import (
     without,
 )
 from .light import LAMPLIGHT, glass_tint, make_light
-from .props import BuiltProp, build_prop, placement
+from .models import FileSet, file_set, on_ground
+from .props import BuiltProp, build_prop, built_file, placement
 from .standing import clear_spot
 from .walls import (
     SLAB,
@@ -76,7 +78,8 @@ def build_world(
     definition: SetDef, catalog: PropCatalog, time: str = "", room: tuple[str, ...] = ()
 ) -> World:
     """The whole set; ``room`` only says from where it is seen, for the light."""
-    builder = _Builder(definition, catalog)
+    scenery = file_set(definition.model) if isinstance(definition, FileSetDef) else None
+    builder = _Builder(definition if scenery is None else on_ground(definition, scenery), catalog, scenery)
     builder.build()
     return builder.world(time or definition.time, room)
 
@@ -96,6 +99,7 @@ class _Builder:
 
     definition: SetDef
     catalog: PropCatalog
+    scenery: FileSet | None = None
     report: Report = field(default_factory=Report)
     objects: list[WorldObject] = field(default_factory=list)
     meshes: list[Mesh] = field(default_factory=list)
@@ -105,6 +109,7 @@ class _Builder:
     floors: dict[float, list[Rect]] = field(default_factory=dict)
     stairs: list[Stairs] = field(default_factory=list)
     walls: list[Stretch] = field(default_factory=list)
+    made: dict[tuple[object, ...], tuple[PropShape, BuiltProp]] = field(default_factory=dict)
     parts: int = 0
     face_parts: dict[tuple[int, float, int, int], int] = field(default_factory=dict)
 
@@ -135,6 +140,8 @@ class _Builder:
                 self._flight(flight)
         for flight in self.definition.flights:
             self._flight(flight)
+        if self.scenery is not None:
+            self._things(self.scenery, rooms[0])
         if self.definition.outdoor:
             self._ground()
 
@@ -161,7 +168,7 @@ class _Builder:
 
     def _glazed(self, mesh: Mesh, time: str) -> Mesh:
         """Glass takes the colour of the hour; at night houses have light in their windows."""
-        tint, share, material = glass_tint(time, self.definition.outdoor)
+        tint, share, material = glass_tint(time, self.definition.outdoor, self.definition.light)
         glass = mesh.materials == MATERIALS.index("glass")
         if share <= 0 or not glass.any():
             return mesh
@@ -213,11 +220,13 @@ class _Builder:
         low, high = (x0, y0, z), (x1, y1, z + max(h, 2.6))
         self.objects.append(WorldObject(owner, (room.name,), room.kind, spots, low, high, matrix))
         holes = wells(self.definition, z, z)
-        self._add(floor_mesh(room, self._parts(), holes), owner, -1)
+        if self.scenery is None or not self.scenery.own_ground:
+            self._add(floor_mesh(room, self._parts(), holes), owner, -1)
         if not room.open:
             above = wells(self.definition, z + h, z + h + SLAB)
             self._add(ceiling_mesh(room, self._parts(), above), owner, ONE_SIDED)
-        self._floor(z, without((x0, y0, x1, y1), holes))
+        walked = without((x0, y0, x1, y1), holes) if self.scenery is None else list(self.scenery.floors)
+        self._floor(z, walked)
         if z > SLAB:
             self._slab(room, holes, owner)
         return owner
@@ -315,12 +324,12 @@ class _Builder:
         known = {spec.name for spec in prop.parameters}
         arguments: dict[str, float | str] = {k: v for k, v in own.items() if k in known}
         arguments |= call_arguments(opening.call, opening.env, prop, self.report)
-        shape = prop.shape(arguments, self.report)
+        shape, built = self._made(prop, arguments)
         axis, across, start, _ = wall_line(room, opening.wall)
         stretch = self.walls[index]
         x, y = stretch.point(start + opening.at)
         matrix = placement(x, y, room.at[2], _TURN[opening.wall])
-        self._object((room.name, opening.name), opening.kind, shape, (), build_prop(shape), matrix, index)
+        self._object((room.name, opening.name), opening.kind, shape, (), built, matrix, index)
         if opening.kind != "window" and stretch.before is not None and stretch.after is not None:
             half = WALL_THICKNESS / 2 + 0.02
             low, high = start + opening.at - opening.width / 2, start + opening.at + opening.width / 2
@@ -328,6 +337,14 @@ class _Builder:
             self._floor(room.at[2], [gap if axis == 0 else (gap[1], gap[0], gap[3], gap[2])])
 
     # -- props ----------------------------------------------------------------------
+
+    def _made(self, prop: PropDef, arguments: dict[str, float | str]) -> tuple[PropShape, BuiltProp]:
+        """A prop made to measure, once however often it is placed."""
+        key = (prop.name, *sorted(arguments.items()))
+        if key not in self.made:
+            shape = prop.shape(arguments, self.report)
+            self.made[key] = shape, build_prop(shape)
+        return self.made[key]
 
     def _placed(
         self,
@@ -340,8 +357,7 @@ class _Builder:
         prop = find_prop(item.call, self.catalog, self.report)
         if prop is None:
             return
-        shape = prop.shape(call_arguments(item.call, item.env, prop, self.report), self.report)
-        built = build_prop(shape)
+        shape, built = self._made(prop, call_arguments(item.call, item.env, prop, self.report))
         wall = -1
         if parent is not None:
             rest = parent_spots.get(item.on or "", PropSpot("", (0.0, 0.0, 0.0), None)).at
@@ -398,6 +414,14 @@ class _Builder:
         self._solids(built, matrix, wall, owner)
         for part in shape.parts:
             self._part(item, part, wall)
+
+    def _things(self, scenery: FileSet, ground: Room) -> None:
+        """What a set's file holds, each an object on its ground."""
+        taken = {item.name for item in ground.placed}
+        for name, thing in scenery.things:
+            path = (ground.name, name if name not in taken else f"{name}_file")
+            built = built_file(thing)
+            self._object(path, name, PropShape((), (), None, None), (), built, np.eye(4), -1)
 
     def _numbered(self, mesh: Mesh) -> Mesh:
         """The mesh with parts of its own."""

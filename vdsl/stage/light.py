@@ -129,8 +129,11 @@ def window_azimuth(definition: SetDef, room: tuple[str, ...]) -> float | None:
     return heading + math.radians(27) if min(off, 1 - off) < 0.15 else heading
 
 
-def glass_tint(time: str, outdoor: bool) -> tuple[Colour, float, str]:
+def glass_tint(time: str, outdoor: bool, light: str = "daylight") -> tuple[Colour, float, str]:
     """The colour window panes take at a time of day, how much of it (0..1), and as what they are drawn:
-    at night glass is dark, save where somebody is at home behind it (:data:`LAMPLIGHT`)."""
+    at night glass is dark, save where somebody is at home behind it (:data:`LAMPLIGHT`). In a ship, whose
+    light is cool, there is no hour."""
+    if light == "cool":
+        return (0.0, 0.0, 0.0), 0.0, "glass"
     hour = _hour(time, outdoor, "daylight")
     return hour.glass, hour.glass_share, "plain" if time == "night" else "glass"

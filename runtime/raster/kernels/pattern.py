@@ -234,7 +234,10 @@ def ground_pattern(material, p, u, v, upright, blur):
         )
         out = (1.015 + (tone - 0.5) * 0.13 * fade(blur, 0.12) + (turned - 0.5) * 0.05) * (1.0 - 0.22 * seam)
     else:  # plate: sheets of metal with seams between them
-        out = bonded(u, v, 1.2, 0.6, 0.016, blur, 0.07, 0.26)
+        x, y = u * (1.0 / 1.2), v * (1.0 / 0.8)
+        tone = hashed(ti.cast(ti.floor(x), ti.i32), ti.cast(ti.floor(y), ti.i32))
+        seam = ti.max(joint(x, 0.016 / 1.2, blur / 1.2), joint(y, 0.016 / 0.8, blur / 0.8))
+        out = (1.0 + (tone - 0.5) * 0.07 * fade(blur, 0.8)) * (1.0 - 0.26 * seam)
         sheen = (p.x - p.y) * 0.4 + p.z * 0.6
         out += (ti.abs(sheen - ti.floor(sheen) - 0.5) - 0.25) * 0.16
     return out

@@ -398,7 +398,8 @@ def _turn_to_reach(plan: Plan, timeline: Timeline, task: Task) -> float:
         return 0.0
     d = np.array(point.position[:2]) - route.at[:2]
     bearing = float(wrap(np.arctan2(d[1], d[0]) - route.heading))
-    if abs(bearing) < 1.1 or np.hypot(*d) < 0.12:
+    both = len({r.hand for r in timeline.reaches if r.to == words[0]}) > 1
+    if abs(bearing) < (0.4 if both else 1.1) or np.hypot(*d) < 0.12:
         return 0.0
     began = route.now
     route.travel(None, route.heading + bearing, Going(speed=task.speed))

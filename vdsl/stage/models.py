@@ -164,6 +164,20 @@ def _file_set(model: ModelFile, state: tuple[int, int]) -> FileSet:
     return FileSet(tuple(things), tuple(ground), own)
 
 
+def on_ground(definition: FileSetDef, scenery: FileSet) -> FileSetDef:
+    """The set with its ground where the file has it; what it places stays where it is in the file's axes."""
+    box = np.array(scenery.floors)
+    (x0, y0), (x1, y1) = box[:, :2].min(0).tolist(), box[:, 2:].max(0).tolist()
+    (ground,) = definition.rooms
+    placed = tuple(
+        replace(p, at=(p.at[0] - x0, p.at[1] - y0)) if p.wall is None else p for p in ground.placed
+    )
+    spots = tuple(replace(s, at=(s.at[0] - x0, s.at[1] - y0, s.at[2])) for s in ground.spots)
+    size = (x1 - x0, y1 - y0, ground.size[2])
+    moved = replace(ground, at=(x0, y0, 0.0), size=size, placed=placed, spots=spots)
+    return replace(definition, rooms=(moved,))
+
+
 def _fit(model: ModelFile) -> Fit:
     return Fit(model.up, model.turn, model.scale, model.height, model.length, model.width)
 

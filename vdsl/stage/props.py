@@ -15,7 +15,7 @@ from runtime import shapes
 from runtime.mesh import Mesh, join
 
 from ..lang.definitions.prop import Primitive, PropShape, PropSpot
-from .models import file_prop
+from .models import FileProp, file_prop
 
 #: Boxes with no side longer than this are nothing to bump into.
 SMALLEST_SOLID = 0.08
@@ -71,6 +71,13 @@ def build_prop(shape: PropShape) -> BuiltProp:
         centre = np.array([(a + b) / 2 for a, b in boxes]).reshape(-1, 3)
         half = np.array([(b - a) / 2 for a, b in boxes]).reshape(-1, 3)
     return BuiltProp(join(meshes), centre, half, spots)
+
+
+def built_file(thing: FileProp) -> BuiltProp:
+    """A thing of a set out of a file."""
+    low, high = np.array([b[0] for b in thing.boxes]), np.array([b[1] for b in thing.boxes])
+    low, high = low.reshape(-1, 3), high.reshape(-1, 3)
+    return BuiltProp(thing.mesh, (low + high) / 2, (high - low) / 2, (before(thing.mesh),))
 
 
 def before(mesh: Mesh) -> PropSpot:

@@ -19,7 +19,7 @@ from runtime.body.skeleton import JOINT
 from runtime.raster.types import Camera, Views
 from runtime.world import World, WorldObject
 
-from ..cinema.sight import clear_lines
+from ..cinema.sight import clear_lines, distances
 from ..cinema.track import camera_axes, look_at_rotation, project
 from ..emit import lettering
 from ..lang.definitions.prop import PropDef
@@ -292,31 +292,41 @@ def eyes_camera(eyes: Sequence[Eye], size: tuple[int, int]) -> Camera:
 
 
 def entrances(world: World, most: int = 2) -> list[Eye]:
-    """Eyes at the doors of a set (from the rims of one without), looking to the middle of its ground."""
+    """Eyes at the doors of a set (at the rims of open ground), looking over its largest places."""
     rooms = [o for o in world.objects if o.kind in ("room", "area")]
-    found: list[Eye] = []
-    for room in sorted(rooms, key=_floor_area, reverse=True):
-        middle = next((s.position for s in room.spots if s.name == "middle"), room.centre)
-        base = room.low[2]
-        doors = [o for o in world.objects if o.kind in ("door", "doorway") and o.path[0] == room.path[0]]
-        starts = [o.centre[:2] for o in doors] or _rims(room)
-        for x, y in starts[:1]:
-            dx, dy = middle[0] - x, middle[1] - y
-            away = max(math.hypot(dx, dy), 1e-6)
-            inside = min(0.45, 0.3 * away)
-            at = (x + dx / away * inside, y + dy / away * inside, base + 1.6)
-            found.append(Eye(at, (middle[0], middle[1], base + 1.5), 20.0))
-        if len(found) >= most:
-            break
-    return found
+    rooms = sorted(rooms, key=lambda o: (o.spot("middle") is None, -_floor_area(o)))
+    return [_entrance(world, room) for room in rooms[:most]]
+
+
+def _entrance(world: World, room: WorldObject) -> Eye:
+    """The place at a door or a rim from which most of a room is seen."""
+    middle = next((s.position for s in room.spots if s.name == "middle"), room.centre)
+    base = room.low[2]
+    doors = [o for o in world.objects if o.kind in ("door", "doorway") and o.path[0] == room.path[0]]
+    starts = [o.centre[:2] for o in doors] + _rims(room, 0.12)
+    inward = [(x + 0.12 * (middle[0] - x), y + 0.12 * (middle[1] - y), base + 1.6) for x, y in starts]
+    xs, ys = (
+        np.linspace(0.2, 0.8, 5) * (b - a) + a for a, b in zip(room.low[:2], room.high[:2], strict=True)
+    )
+    ground = np.array([(x, y, base + z) for x in xs for y in ys for z in (0.6, 1.3)])
+    eye = np.array(inward)[:, None]
+    hidden = np.zeros((len(inward), len(world.walls)), bool)
+    seen = clear_lines(world.solids, eye, ground[None], hidden).mean((1, 2))
+    free = distances(world.solids, eye[:, 0]).min(1, initial=9.0) > 0.35
+    far = np.linalg.norm(eye[:, 0, :2] - np.array(middle[:2]), axis=1)
+    x, y, z = inward[int(np.argmax(seen * free + 0.004 * np.minimum(far, 12.0)))]
+    return Eye((x, y, z), (middle[0], middle[1], base + 1.5), 20.0)
 
 
 def _floor_area(room: WorldObject) -> float:
     return (room.high[0] - room.low[0]) * (room.high[1] - room.low[1])
 
 
-def _rims(room: WorldObject) -> list[tuple[float, float]]:
-    return [(room.low[0] + 0.6, room.low[1] + 0.6)]
+def _rims(room: WorldObject, inset: float) -> list[tuple[float, float]]:
+    """Points a little inside a room's corners and the middles of its sides."""
+    (x0, y0), (x1, y1) = room.low[:2], room.high[:2]
+    shares = (inset, 0.5, 1 - inset)
+    return [(x0 + a * (x1 - x0), y0 + b * (y1 - y0)) for a in shares for b in shares if (a, b) != (0.5, 0.5)]
 
 
 def _bounds(world: World, path: tuple[str, ...]) -> tuple[tuple[float, ...], tuple[float, ...]]:

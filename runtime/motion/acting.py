@@ -345,8 +345,10 @@ class Performer:
             ahead, down = -below(-ahead, reach), -below(-down, reach)
             lower = np.minimum(down * crouch, np.maximum(0.32 * self.height - drop, 0.0))
             hips = 0.30 * self.height  # from there to the shoulders
-            lean = np.minimum(lean + (1.1 * ahead + 1.0 * (down - lower)) / hips, 1.1)
+            lean = np.minimum(lean + (1.1 * ahead + 1.0 * (down - lower)) / hips, 1.1 - 0.7 * tracks.close)
             drop = drop + lower
+            room = 0.09 * self.height * (1 - self.sitting) * (1 - self.low.share)
+            forward = np.minimum(forward + 0.6 * ahead, room)
             side = (gap[0] - gap[1]) * -0.5
             twist = np.clip(twist + smooth(side, 0.1 * self.fps), -0.45, 0.45)
             self.torso(lean, twist, drop, forward)

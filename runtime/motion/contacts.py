@@ -46,7 +46,7 @@ def body_place(figure: Figure, place: str, hand: int, yaw: Array) -> Array:
         "chin": (1.25 * eye[0], m * 0.3 * eye[1], mouth_z - 0.85 * eye[2]),
         "head": (0.2 * eye[0], m * 1.9 * eye[1], 2.3 * eye[2]),
         "eyes": (1.75 * eye[0], m * 0.8 * eye[1], eye[2]),
-        "cheek": (0.95 * eye[0], m * 2.1 * eye[1], mouth_z),
+        "cheek": (1.15 * eye[0], m * 2.4 * eye[1], mouth_z),
         "forehead": (1.35 * eye[0], m * 1.0 * eye[1], 1.75 * eye[2]),
         "neck": (-1.05 * eye[0], m * 0.6 * eye[1], 0.9 * mouth_z),
     }
@@ -179,8 +179,9 @@ class Wield:
 class HandTracks:
     """All layers of one person, composed. Arrays are [2, T], left first.
 
-    weight: how far the palm is drawn to its place, pull: to one the body leans for; turning: how far its
-    orientation is; inward, pitch, tilt: that orientation; carry: a thing is in the hand; grip: fingers closed
+    weight: how far the palm is drawn to its place, pull: to one the body leans for, close [T]: to one on
+    somebody else's body; turning: how far its orientation is; inward, pitch, tilt: that orientation
+    carry: a thing is in the hand; grip: fingers closed
     """
 
     def __init__(
@@ -224,6 +225,8 @@ class HandTracks:
         self.lifted = lifted - tilt[1]  # how far what is held points up
         self.pitch = self.pitch - tilt[1]
         self.reaching = bool(self.pull.any())
+        others = [x.weight for x in layers if x.other is not None]
+        self.close = np.max(others, axis=0) if others else np.zeros(len(t))
 
     def position(self, figure: Figure) -> Array:
         """Palms' places [2, T, 3] for the torso as it is posed now."""

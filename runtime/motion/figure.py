@@ -235,7 +235,7 @@ class Figure:
         for _ in range(5 if goals.weight.any() else 1):
             way = goal_wrist - wrist_fk
             target = wrist_fk + w * way + (0.7 * w * (1 - w) * norm(way)[..., None]) * arc
-            limb = two_bone(root, target, self._upper, self._lower, pole, fold=2.72)
+            limb = two_bone(root, target, self._upper, self._lower, pole, fold=2.8)
             fore = bone_rotation(limb.end - limb.middle, limb.hinge, self._forearm_frames)
             relative = _wrists(fore, fk_relative, goals, axis)
             hand = fore @ relative

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from .anatomy import Figure, leg_loft, trunk
+from .anatomy import ARM_FRAME, Figure, leg_loft, trunk
 from .field import Field, Points, Values, gradient, union
 from .outfit import neck_radius, skirt_tail
 from .pieces import Piece, hemmed, shade
@@ -182,12 +182,14 @@ def _sleeveless(f: Figure, low: float, neck: float, sharp: float) -> Field:
 
     def field(p: Points) -> Values:
         arm = p[:, 1] - 0.86 * shoulder[1] - 0.35 * np.clip(f.level(0.80) - p[:, 2], -0.02 * h, 0.2 * h)
-        arm = np.where(p[:, 2] > f.level(0.58), arm, -0.05)
+        u, v, w = ((p - shoulder) @ ARM_FRAME.T).T
+        sleeve = (u > 0.07 * h) & (np.hypot(v, w) < 0.075 * h)
+        arm = np.where(p[:, 2] > f.level(0.58), arm, np.where(sleeve & (p[:, 1] > 0.12 * h), 0.05, -0.05))
         deep = np.clip((p[:, 2] - (top - neck)) / neck, 0.0, 1.3)
-        v = 0.062 * h * deep**sharp - p[:, 1]
-        v = np.where(p[:, 0] > f.joint("neck")[0], v, -0.05)
-        v = np.where(deep > 0, v, -0.05)
-        return np.maximum(np.maximum(arm, v), np.maximum(low - p[:, 2], p[:, 2] - top - 0.012 * h))
+        open_ = np.where(
+            (p[:, 0] > f.joint("neck")[0]) & (deep > 0), 0.062 * h * deep**sharp - p[:, 1], -0.05
+        )
+        return np.maximum(np.maximum(arm, open_), np.maximum(low - p[:, 2], p[:, 2] - top - 0.012 * h))
 
     return field
 

@@ -162,7 +162,7 @@ def shoes(f: Figure) -> list[Piece]:
         bulk = 0.010 * h if f.spec.top == "spacesuit" else 0.0
         solid = lambda p: smooth_min(
             foot(p), np.maximum(shaft(p) - bulk, 0.5 * f.p.ankle - p[:, 2]), 0.03 * h
-        )  # noqa: E731
+        )
         top_z = boot_top(f) + 0.03 * h
     patch = polygonise(
         solid,

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from .anatomy import Figure
+from .anatomy import Figure, arm_loft, trunk
 from .collars import collar
-from .field import Field, Points, Values, ellipsoid, round_cone, union
+from .field import Field, Points, Values, ellipsoid, round_cone, smooth_min, union
 from .outfit import (
     above,
     along_arm,
@@ -96,7 +96,23 @@ def tank(f: Figure) -> list[Piece]:
         return p[:, 1] - inner
 
     patch = clip(piece.patch, lambda p: np.where(p[:, 2] > f.level(0.62), armhole(p), -0.05))
-    return [hemmed(Piece(patch, piece.colour, "top", piece.solid, material="cloth"), 0.009 * h)]
+    return [
+        hemmed(Piece(patch, piece.colour, "top", piece.solid, material="cloth"), 0.009 * h),
+        _shoulders(f),
+    ]
+
+
+def _shoulders(f: Figure) -> Piece:
+    """The skin from the chest up over the left shoulder, which other tops cover."""
+    h = f.p.height
+    body, limb_ = trunk(f), arm_loft(f)
+    solid: Field = lambda p: smooth_min(body(p), limb_(p), 0.026 * h)  # noqa: E731
+    end = 0.30 * f.p.upper_arm
+    patch = surface_of(f, solid, f.level(0.50), f.level(1.14), True, 420)
+    patch = clip(
+        patch, both(both(above(f.level(0.56)), along_arm(f, end)), lambda p: p[:, 2] - f.level(1.08))
+    )
+    return Piece(patch, f.spec.skin, "skin", solid)
 
 
 def hoodie(f: Figure) -> list[Piece]:

@@ -6,7 +6,7 @@ import numpy as np
 
 from .anatomy import Figure
 from .collars import stand_up
-from .field import Field, Points, Values
+from .field import Field
 from .outfit import along_arm, garment, neckline, skirt_tail, sleeve_length
 from .pieces import Piece, hemmed, parted, parted_all, shade
 
@@ -56,13 +56,15 @@ def robe(f: Figure) -> list[Piece]:
         tail=skirt_tail(f, hem, 0.26), rule="skirt", faces=1300,
     )  # fmt: skip
 
-    def stole(p: Points) -> Values:
-        return np.maximum(np.abs(p[:, 1] - 0.026 * h) - 0.015 * h, f.joint("neck")[0] - p[:, 0])
-
-    looks = parted(piece, stole, f.spec.accent_color, "trim")
+    stole: list[Field] = [
+        lambda p: p[:, 1] - 0.041 * h,
+        lambda p: 0.012 * h - p[:, 1],
+        lambda p: f.joint("neck")[0] - p[:, 0],
+    ]
+    *rest, band = parted_all(piece, stole, f.spec.accent_color, "trim")
     cuff = along_arm(f, sleeve_length(f, 0.86), 0.09)
-    sleeve = parted(looks[0], lambda p: -cuff(p), shade(f.spec.top_color, 0.84), "over")
-    pieces = [hemmed(q, 0.011 * h) for q in [*sleeve, looks[1]]]
+    sleeve = parted(rest[0], lambda p: -cuff(p), shade(f.spec.top_color, 0.84), "over")
+    pieces = [hemmed(sleeve[0], 0.011 * h), *rest[1:], band, hemmed(sleeve[1], 0.011 * h)]
     return [*pieces, *stand_up(f, f.spec.shirt_color, 0.022, part="shirt")]
 
 

@@ -134,10 +134,11 @@ def test_budget_and_ids(name: str) -> None:
     assert w.mesh_object.min() >= 0
     assert w.mesh_object.max() < len(w.objects)
     assert w.mesh_wall.max() < len(w.walls)
-    movable = {o.id for o in w.objects if o.mesh is not None}
-    assert movable
-    assert not movable & set(w.mesh_object.tolist())
-    assert not movable & set(w.solids.object.tolist())
+    moving = {o.id for o in w.objects if o.mesh is not None}
+    carried = {o.id for o in w.objects if o.grip is not None}
+    assert carried
+    assert not moving & set(w.mesh_object.tolist())
+    assert not carried & set(w.solids.object.tolist())
     assert len(w.solids.yaw) < 260
 
 
@@ -154,7 +155,7 @@ def test_stand_spots_are_free(name: str) -> None:
                 count += 1
                 x, y, z = spot.position
                 assert z == 0
-                assert is_clear(x, y, w.solids, w.floors), (o.path, spot)
+                assert is_clear(x, y, w.solids, w.storeys[0]), (o.path, spot)
     assert count > 15
 
 
@@ -210,7 +211,7 @@ def test_movable_things_rest_on_something(name: str) -> None:
     w = world(name)
     by_path = {o.path: o for o in w.objects}
     for o in w.objects:
-        if o.mesh is None:
+        if o.grip is None:
             continue
         foot = o.low[2]
         parent = by_path[o.path[:-1]]

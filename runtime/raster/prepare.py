@@ -17,7 +17,7 @@ from scipy.sparse.csgraph import connected_components
 from ..mesh import MATERIALS, Mesh
 from .bake import Volume, key_casters, occlusion_volume, stage_bounds
 from .film import to_linear
-from .types import ONE_SIDED, RenderScene, Style
+from .types import LOOSE, ONE_SIDED, RenderScene, Style
 
 CLUSTER = 64  # triangles
 WELD = 1e-5  # metres
@@ -81,6 +81,11 @@ def check(scene: RenderScene) -> None:
         raise ValueError("RenderScene.static_wall: expected one number for each static face")
     if len(scene.static_wall) and scene.static_wall.max() >= scene.wall_count:
         raise ValueError("RenderScene.static_wall: a wall is not below wall_count")
+    fitting = scene.fitting
+    if fitting is not None and len(fitting) != len(scene.skinned.faces):
+        raise ValueError("RenderScene.fitting: expected one number for each skinned face")
+    if fitting is not None and len(fitting) and fitting.max() >= scene.wall_count:
+        raise ValueError("RenderScene.fitting: a wall is not below wall_count")
     shape = (len(scene.skinned.vertices), 4)
     if scene.joints.shape != shape or scene.weights.shape != shape:
         raise ValueError(f"RenderScene.joints, weights: expected {shape}")
@@ -173,26 +178,32 @@ def prepare(scene: RenderScene, style: Style) -> Prepared:
     moving_cull = closed_faces(scene.skinned, scene.skinned_object)
     order, clusters = _clusters(scene.static, scene.static_object, static_wall, static_cull)
     static = _ordered(scene.static, order)
-    none = np.full(len(scene.skinned.faces), -1, np.int32)
-    moving_order, moving_clusters = _clusters(scene.skinned, scene.skinned_object, none, moving_cull)
+    fitting = np.full(len(scene.skinned.faces), LOOSE, np.int32) if scene.fitting is None else scene.fitting
+    own_wall = np.maximum(fitting, -1).astype(np.int32)
+    moving_order, moving_clusters = _clusters(scene.skinned, scene.skinned_object, own_wall, moving_cull)
+    fitting, own_wall = fitting[moving_order], own_wall[moving_order]
     skinned = _ordered(scene.skinned, moving_order)
     moving_clusters = moving_clusters.copy()
     moving_clusters[:, 0] += len(order)
 
     object_ids = np.concatenate([scene.static_object[order], scene.skinned_object[moving_order]])
     # panes of glass and lamps are not divided by lines
-    clear = np.isin(static.materials, [MATERIALS.index("glass"), MATERIALS.index("glow")])
-    parts = np.concatenate([np.where(clear, -1, static.parts), skinned.parts])
-    moves = np.repeat([0, 1], [len(order), len(moving_order)])
+    panes = [MATERIALS.index("glass"), MATERIALS.index("glow")]
+    clear = np.isin(static.materials, panes)
+    clear_part = np.isin(skinned.materials, panes) & (fitting > LOOSE)
+    parts = np.concatenate([np.where(clear, -1, static.parts), np.where(clear_part, -1, skinned.parts)])
+    moves = np.concatenate([np.zeros(len(order), int), (fitting == LOOSE).astype(int)])
     surfaces, surface = np.unique(np.stack([moves, object_ids, parts], axis=1), axis=0, return_inverse=True)
     if len(surfaces) >= 0xFFFF:
         raise ValueError(f"RenderScene: {len(surfaces)} parts of objects; 65534 is the most")
     flags = np.concatenate([_flat(static) * FLAT, _flat(skinned) * FLAT + MOVES]).astype(np.int32)
     flags += np.concatenate([static_cull[order], moving_cull[moving_order]]) * np.int32(CLOSED)
     materials = np.concatenate([static.materials, skinned.materials])
-    wall = np.concatenate([static_wall[order], none])
+    wall = np.concatenate([static_wall[order], own_wall])
     quiet = np.where(clear[:, None], to_linear(static.colors), quieted(to_linear(static.colors), style.quiet))
-    color = np.concatenate([quiet, to_linear(skinned.colors)])
+    bright = to_linear(skinned.colors)
+    calm = (fitting > LOOSE) & ~clear_part
+    color = np.concatenate([quiet, np.where(calm[:, None], quieted(bright, style.quiet), bright)])
     set_casters = key_casters(static, static_wall[order], scene.static_object[order])
     return Prepared(
         vertices=static.vertices,
@@ -210,11 +221,18 @@ def prepare(scene: RenderScene, style: Style) -> Prepared:
         moving_surface=int((surfaces[:, 0] == 0).sum()),
         static_faces=len(order),
         set_casters=set_casters,
-        casters=(key_casters(skinned, none, none) + len(order)).astype(np.int32),
+        casters=(_casters(skinned, own_wall) + len(order)).astype(np.int32),
         area=_vertex_area(skinned),
         volume=occlusion_volume(static, set_casters),
         stage=stage_bounds(static, set_casters),
     )
+
+
+def _casters(skinned: Mesh, wall: NDArray[np.int32]) -> NDArray[np.int32]:
+    """Skinned faces that throw shadows: all but those of doors and windows, whose walls throw none."""
+    nobody = np.full(len(skinned.faces), -1, np.int32)
+    found = key_casters(skinned, nobody, nobody)
+    return found[wall[found] < 0]
 
 
 def _flat(mesh: Mesh) -> NDArray[np.int32]:

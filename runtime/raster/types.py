@@ -15,6 +15,8 @@ from numpy.typing import NDArray
 from ..mesh import Mesh
 from ..world import Light
 
+#: In ``fitting``: a person, or a thing that is carried about.
+LOOSE = -2
 #: In ``static_wall``: a face seen from its front only, such as a ceiling.
 ONE_SIDED = -2
 
@@ -52,6 +54,8 @@ class RenderScene:
     skinned: bind-pose mesh of everything that moves; skinned_object: int32 [F], object ids that
         continue after the static ones; joints: int32 [V, 4] palette indices; weights: float32 [V, 4]
     wall_count: number of wild walls
+    fitting: int32 [F] of skinned faces: :data:`LOOSE` for people and things; what moves in the set itself
+        (a door's leaf) is drawn like the set: the wild wall it is in, or -1. None: all are loose
     """
 
     static: Mesh
@@ -63,6 +67,7 @@ class RenderScene:
     weights: NDArray[np.float32]
     wall_count: int
     light: Light
+    fitting: NDArray[np.int32] | None = None
 
 
 @dataclass(frozen=True, eq=False)

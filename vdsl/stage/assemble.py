@@ -15,8 +15,8 @@ from numpy.typing import NDArray
 from runtime.body.build import Body
 from runtime.body.skeleton import PALETTE, skinning_matrices
 from runtime.mesh import Mesh, join
-from runtime.raster.types import RenderScene
-from runtime.world import World
+from runtime.raster.types import LOOSE, RenderScene
+from runtime.world import World, WorldObject
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,6 +52,7 @@ def assemble(world: World, bodies: Mapping[str, Body]) -> StagedScene:
         joints.append(body.joints + np.int32(first_joint[name]))
         weights.append(body.weights)
         objects.append(np.full(len(body.mesh.faces), object_ids[name], np.int32))
+    fitting: list[NDArray[np.int32]] = [np.full(len(m.faces), LOOSE, np.int32) for m in meshes]
     prop_entry: dict[int, int] = {}
     for thing in world.objects:
         if thing.mesh is None:
@@ -62,6 +63,7 @@ def assemble(world: World, bodies: Mapping[str, Body]) -> StagedScene:
         joints.append(np.full((count, 4), prop_entry[thing.id], np.int32))
         weights.append(np.tile(np.array([1, 0, 0, 0], np.float32), (count, 1)))
         objects.append(np.full(len(thing.mesh.faces), thing.id, np.int32))
+        fitting.append(np.full(len(thing.mesh.faces), _wall_of(thing, world), np.int32))
     skinned = join(_with_own_parts(meshes))
     return StagedScene(
         world=world,
@@ -76,12 +78,21 @@ def assemble(world: World, bodies: Mapping[str, Body]) -> StagedScene:
             weights=np.concatenate(weights) if weights else np.zeros((0, 4), np.float32),
             wall_count=len(world.walls),
             light=world.light,
+            fitting=np.concatenate(fitting) if fitting else None,
         ),
         first_joint=first_joint,
         prop_entry=prop_entry,
         palette_size=len(bodies) * len(PALETTE) + len(prop_entry),
         object_ids=object_ids,
     )
+
+
+def _wall_of(thing: WorldObject, world: World) -> int:
+    """The wild wall a part goes away with, -1 for one in no wall, LOOSE for what is carried about."""
+    if thing.hinge is None:
+        return LOOSE
+    of_owner = world.mesh_wall[world.mesh_object == thing.hinge.owner]
+    return max(int(of_owner[0]), -1) if len(of_owner) else -1
 
 
 def _with_own_parts(meshes: list[Mesh]) -> list[Mesh]:

@@ -304,9 +304,9 @@ def raster_serial(
             else:
                 ball = row3(sphere, c)
                 radius = sphere[c, 3]
-                wall = clusters[c, 3]
-                if wall >= 0:
-                    shown = hidden[n, wall] == 0
+            wall = clusters[c, 3]
+            if wall >= 0:
+                shown = hidden[n, wall] == 0
             ball -= eye
             z = forward.dot(ball)
             if (

@@ -68,6 +68,8 @@ from .walls import (
 Matrix = NDArray[np.float64]
 #: A prop put against a wall stands off it by this much, so that it does not sink into the skirting.
 OFF_WALL = 0.016
+#: Props whose names end so have light in their windows at night.
+INHABITED = ("house", "train")
 #: A board runs along the foot of walls of these materials.
 SKIRTED = ("plain", "plaster", "wood")
 #: The earth around an outdoor set reaches this far beyond it, metres.
@@ -146,7 +148,8 @@ class _Builder:
             self._ground()
 
     def world(self, time: str, room: tuple[str, ...]) -> World:
-        mesh = self._glazed(join(self.meshes), time)
+        owners = np.concatenate([*self.mesh_object, np.zeros(0, np.int32)])
+        mesh = self._glazed(join(self.meshes), time, owners)
         solids = self._packed_solids()
         levels = tuple(Level(z, tuple(rects)) for z, rects in sorted(self.floors.items()))
         kept = [_with_clear_spots(o, solids, levels) for o in self.objects]
@@ -166,7 +169,7 @@ class _Builder:
             tuple(self.stairs),
         )
 
-    def _glazed(self, mesh: Mesh, time: str) -> Mesh:
+    def _glazed(self, mesh: Mesh, time: str, owners: NDArray[np.int32]) -> Mesh:
         """Glass takes the colour of the hour; at night houses have light in their windows."""
         tint, share, material = glass_tint(time, self.definition.outdoor, self.definition.light)
         glass = mesh.materials == MATERIALS.index("glass")
@@ -178,8 +181,8 @@ class _Builder:
         colors[glass] = (1 - share) * own + share * np.clip(np.asarray(tint, np.float32) * relative, 0, 1)
         materials[glass] = MATERIALS.index(material)
         if time == "night":
-            homes = [o.id for o in self.objects if o.kind.endswith("house")]
-            lit = glass & np.isin(np.concatenate(self.mesh_object), homes)
+            homes = [o.id for o in self.objects if o.kind.endswith(INHABITED)]
+            lit = glass & np.isin(owners, homes)
             colors[lit], materials[lit] = LAMPLIGHT, MATERIALS.index("glow")
         return Mesh(mesh.vertices, mesh.faces, mesh.normals, colors, mesh.parts, materials)
 

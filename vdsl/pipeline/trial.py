@@ -25,6 +25,8 @@ CAST = ("woman(top crimson)", "man(top navy)")
 #: Far more ways than any action has: every variant is wanted here.
 _EVERY_WAY = 64
 #: Where big things stand on the trial floor, with a table in its middle and without.
+#: Metres: what is held higher than this above its foot stands on the floor, not on the table.
+_TALL = 0.55
 _BESIDE_TABLE = ((7.9, 6.3), (4.1, 6.3), (3.4, 8.2), (8.6, 8.2))
 _AROUND = ((7.5, 7.2), (4.5, 7.2), (8.6, 5.0), (3.4, 5.0))
 
@@ -85,7 +87,8 @@ def action_script(definition: ActionDef, catalog: Catalog, cast: tuple[str, str]
         prop = catalog.get("prop", name)
         if not isinstance(prop, PropDef):
             raise NoTrialError(f"the action `{definition.name}` is tried with `{name}`, which is no prop")
-        (small if prop.movable else big).append(name)
+        grip = prop.shape().grip
+        (small if grip is not None and grip[2] < _TALL else big).append(name)
     both = PARTNER in words
     table = bool(small) or "table" in big
     big = [name for name in big if name != "table"]

@@ -13,7 +13,7 @@ from runtime.mesh import MATERIALS
 from runtime.shapes import volume
 from runtime.world import World
 from vdsl.lang.definitions.prop import PropDef
-from vdsl.lang.definitions.set import SetDef, read_set
+from vdsl.lang.definitions.set import LIGHTS, SetDef, read_set
 from vdsl.lang.diagnostics import Report
 from vdsl.lang.parse import parse_definition
 from vdsl.lang.source import Source
@@ -38,13 +38,17 @@ def world(name: str, time: str = "day") -> World:
 
 
 def own_world(text: str) -> World:
+    return own_world_at(text, "day")
+
+
+def own_world_at(text: str, time: str) -> World:
     report = Report()
     parsed = parse_definition(Source("test.vds", text), "set", "s", report)
     assert parsed is not None
     definition = read_set(parsed, report)
     assert definition is not None, report.diagnostics
     assert not report.errors, report.diagnostics
-    return build_world(definition, CATALOG, "day")
+    return build_world(definition, CATALOG, time)
 
 
 def arguments(prop: PropDef, factor: float) -> dict[str, float | str]:
@@ -366,3 +370,63 @@ def test_houses_are_lit_at_night_and_shelters_are_not() -> None:
     assert "far_house" in kinds
     assert not kinds & {"bus_shelter", "car"}
     assert not (w.mesh.materials == MATERIALS.index("glass")).any()
+
+
+# --- what a set brings of its own -------------------------------------------------------
+
+
+def test_walls_are_of_the_rooms_material_and_only_some_have_skirting() -> None:
+    text = "set s {{\n  room r, size (4, 3, 2.6)m, floor stone{} {{\n    spot middle, at (2, 1.5)m\n  }}\n}}"
+    plain, hewn = own_world(text.format("")), own_world(text.format(", wall stone, wall-color grey"))
+
+    def upright(w: World, material: str) -> int:
+        tall = np.ptp(w.mesh.vertices[w.mesh.faces][..., 2], axis=1) > 2
+        return int(((w.mesh.materials == MATERIALS.index(material)) & tall & (w.mesh_wall >= 0)).sum())
+
+    assert upright(plain, "stone") == 0
+    assert upright(hewn, "stone") == 8  # the insides of four walls; the outsides stay plaster
+    assert upright(plain, "plaster") == 16
+    assert len(hewn.mesh.faces) < len(plain.mesh.faces)
+
+
+def test_a_yard_lies_under_the_sky() -> None:
+    text = (
+        "set s {{\n  ground sand, material sand, deep 2m\n  room yard, size (6, 5, 4)m{} {{\n"
+        "    spot middle, at (3, 2)m\n  }}\n}}"
+    )
+    yard, cellar = own_world(text.format(", ceiling no")), own_world(text.format(""))
+    assert yard.outdoor
+    assert not cellar.outdoor
+    assert yard.light.backdrop != cellar.light.backdrop
+    corners = yard.mesh.vertices[yard.mesh.faces]
+    land = corners[yard.mesh.materials == MATERIALS.index("sand")]
+    assert len(land)
+    assert land[..., 2] == pytest.approx(-2.0)
+    level = np.ptp(corners[..., 2], axis=1) < 1e-6
+    assert corners[level][..., 2].max() == pytest.approx(4.0)  # the walls' tops only
+    narrow = np.ptp(corners[level & (corners[..., 2].min(1) > 3)], axis=1)[:, :2].min(1)
+    assert narrow.max() < 0.2
+
+
+@pytest.mark.parametrize("light", LIGHTS[1:])
+def test_lamps_do_not_mind_the_hour_but_are_lowered_at_night(light: str) -> None:
+    text = (
+        f"set s {{\n  light {light}\n  room r, size (4, 3, 2.6)m {{\n    spot middle, at (2, 1.5)m\n  }}\n}}"
+    )
+    parsed = parse_definition(Source("test.vds", text), "set", "s", Report())
+    assert parsed is not None
+    definition = read_set(parsed, Report())
+    assert definition is not None
+    day, dusk, night = (make_light(definition, t) for t in ("day", "dusk", "night"))
+    assert day == dusk
+    assert 0.75 < night.sky[1] / day.sky[1] < 0.95
+    assert min(night.sky) > 0.5
+    assert max(night.sun_color) > 0.4
+
+
+def test_stars_shine_at_any_hour() -> None:
+    day, dusk = (own_world_at("set s {\n  light cool\n  room r, size (6, 5, 3)m {\n    "
+                              "place view = star_window, wall north, at 3m, up 0.5m\n  }\n}", t)
+                 for t in ("day", "dusk"))  # fmt: skip
+    assert (day.mesh.colors == dusk.mesh.colors).all()
+    assert (day.mesh.materials == dusk.mesh.materials).all()

@@ -200,7 +200,7 @@ class Performer:
         """How far the feet hang above the floor on a seat too high for them [T]: thighs stay level."""
         hip = self.seat_height + sit_clearance(self.skeleton)
         knee = self.skeleton.bind[JOINT["shin_l"]][2]
-        return np.asarray(np.maximum(hip - knee - level_thigh(self.skeleton), 0.0))
+        return np.asarray(np.maximum(hip - knee - level_thigh(self.skeleton), 0.0) * (1 - self.low.share))
 
     def _pelvis_height(self, xy: Array, ankle: Array, drop: Array) -> Array:
         """[T]: as high as the legs allow, never with a knee snapped straight."""
@@ -347,7 +347,7 @@ class Performer:
             hips = 0.30 * self.height  # from there to the shoulders
             lean = np.minimum(lean + (1.1 * ahead + 1.0 * (down - lower)) / hips, 1.1 - 0.7 * tracks.close)
             drop = drop + lower
-            room = 0.09 * self.height * (1 - self.sitting) * (1 - self.low.share)
+            room = 0.09 * self.height * (1 - self.sitting) * (1 - self.low.share) * (1 - tracks.close)
             forward = np.minimum(forward + 0.6 * ahead, room)
             side = (gap[0] - gap[1]) * -0.5
             twist = np.clip(twist + smooth(side, 0.1 * self.fps), -0.45, 0.45)
@@ -422,7 +422,7 @@ class Performer:
         knit = np.clip(c.pair("brow", "knit").max(axis=0) + feeling["knit"], 0.0, 1.2)
         lids = np.maximum(np.maximum(blinks(self.t, self.rng), c["lids.close"]), feeling["lid"])
         smile = np.clip(c["mouth.smile"] + feeling["smile"], -1.1, 1.1)
-        turn, down = eye_angles(self.look, rot_zy(self.yaw, self.low.tilt), *self._gaze_from())
+        turn, down = eye_angles(self.look, rot_zy(self.yaw, self.low.looks), *self._gaze_from())
         self.figure.face(
             (turn + c["eyes.turn"], down + c["eyes.down"]),
             np.clip(lids, 0, 1), (up, knit), smile,

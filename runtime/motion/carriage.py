@@ -22,6 +22,7 @@ Array = NDArray[np.float64]
 class Low:
     """The mixture of low postures: ``share`` of them against standing, and their numbers, weighted by it.
 
+    tilt: of the trunk, forward; looks: how far down "ahead" is for the eyes (on hands and knees one looks up)
     hip: height of the hip joints in the world; poles: [2, T, 3], where knees point, in the world
     palms: share of postures with planted palms, and how high; knees: share with hands resting on the knees
     """
@@ -39,6 +40,7 @@ class Low:
         self.any = bool(self.share.max() > 0)
         self.pitch, self.lean, self.nod, self.swing = (mixed(v) for v in ("pitch", "lean", "nod", "swing"))
         self.tilt = self.pitch + self.lean
+        self.looks = np.where(self.tilt < 0.0, self.tilt, 0.25 * self.tilt)
         beds = [s.ground for s in route.stances]
         bed = beds[-1] if beds else 0.0
         self.hip = mixed("hip") + self.share * bed

@@ -19,6 +19,7 @@ wield: weight, and how what the hand holds points: pitch (up), inward, roll (its
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -137,6 +138,27 @@ class Channels:
                     self.add(f"{part}_{side}.{axis}+", value)
             else:
                 self.put(part, side, {**pose, "weight": np.clip(weight, 0.0, 1.0)})
+
+
+#: Arm poses away from which movements are bigger or smaller.
+_HANGING = {"swing": 0.1, "out": 0.2, "twist": 0.2, "bend": 0.3}
+
+
+def enlarged(timeline: Timeline, amount: float) -> Timeline:
+    """The timeline with poses of trunk and arms and all beats bigger or smaller by a factor."""
+    if amount == 1.0:
+        return timeline
+    tracks = []
+    for track in timeline.tracks:
+        head, axis = track.channel.split(".")
+        part = head.partition("_")[0]
+        rest = _HANGING.get(axis) if part == "arm" else 0.0 if part in ("body", "head", "shoulder") else None
+        if rest is not None:
+            values = tuple(rest + amount * (v - rest) for v in track.values)
+            track = replace(track, values=values)
+        tracks.append(track)
+    beats = tuple(replace(b, amplitude=amount * b.amplitude) for b in timeline.beats)
+    return replace(timeline, tracks=tuple(tracks), beats=beats)
 
 
 def resolve(channel: str, hands: Mapping[str, str]) -> str:

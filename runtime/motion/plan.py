@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from runtime.body.skeleton import JOINT
 
+from .channels import enlarged
 from .gait import GAITS, WALK
 from .manner import PLAIN, Manner, manner_of
 from .postures import WAYS
@@ -147,7 +148,10 @@ def plan_task(
     _go(plan, task, going, rng)
     _sit_or_stand(plan, task, going, rng)
     partner = _close_in(plan, task, going)
-    if clip.posture:
+    bed = task.target.bed if task.target is not None else None
+    if clip.posture == "lying" and bed is not None and not route.low:
+        route.lie(*bed, 3.4 / task.speed)
+    elif clip.posture:
         route.settle(clip.posture, task.speed, clip.posture_time / task.speed)
     if clip.capture is not None:
         _rise(route, task)
@@ -160,7 +164,8 @@ def plan_task(
     if clip.lead:
         duration = max(duration, route.now - clip_start)
     if duration > 0:
-        window = _play(plan, variant.timeline, start, duration, task)
+        timeline = enlarged(variant.timeline, plan.manner.amplitude)
+        window = _play(plan, timeline, start, duration, task)
         if clip.capture is not None:
             _replay(plan, clip.capture, window)
         route.now = max(route.now, window.start + duration)
@@ -232,7 +237,7 @@ def _fetch(
     """Goes to the thing needed, if there is a way to go, and takes it."""
     assert task.fetch is not None
     if len(task.fetch) > 1:
-        _rise(plan.route, task)
+        _rise(plan.route, task, task.fetch)
         _travel(plan, task, task.fetch, task.fetch_heading, _going(plan, task), rng)
     _take_needed(plan, task, props)
 
@@ -265,8 +270,12 @@ def _open_door(plan: Plan, task: Task, door: Passage) -> None:
     plan.route.wait(duration)
 
 
-def _rise(route: Route, task: Task) -> None:
-    """Stands up, from whatever one is on."""
+def _rise(route: Route, task: Task, way: Array | None = None) -> None:
+    """Stands up, from whatever one is on; off a bed to the side on which the ``way`` goes on."""
+    if route.on_bed:
+        way = np.asarray(way, dtype=np.float64)[:, :2] if way is not None else np.zeros((0, 2))
+        free = [p for p in way if np.hypot(*(p - route.at[:2])) > 0.45]
+        route.leave_bed(free[0] if free else None, 2.2 / task.speed)
     if route.seat is not None:
         route.stand(STAND_TIME / task.speed)
     route.settle("standing", task.speed)
@@ -282,7 +291,7 @@ def _go(plan: Plan, task: Task, going: Going, rng: np.random.Generator) -> None:
         if clip.travel == "crawl":
             route.settle("fours", task.speed)
         else:
-            _rise(route, task)
+            _rise(route, task, path)
         end = np.asarray(path, dtype=np.float64)[-1, :2]
         if heading is None and clip.seat != "down":
             heading = _facing(task, end)
@@ -354,6 +363,9 @@ def _take_needed(plan: Plan, task: Task, props: dict[int, PropState]) -> None:
         )
     window = _play(plan, pick, plan.route.now, duration, replace(task, target=at, second=None))
     plan.route.now = window.start + duration
+    to = _facing(replace(task, path=None), plan.route.at[:2]) if task.clip.travel == "none" else None
+    if to is not None and plan.route.posture == "standing" and abs(wrap(to - plan.route.heading)) > 0.4:
+        plan.route.travel(None, to, Going(speed=task.speed))  # it was taken from elsewhere
 
 
 def _play(plan: Plan, timeline: Timeline, start: float, duration: float, task: Task) -> Window:

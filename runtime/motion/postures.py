@@ -103,7 +103,7 @@ def row(posture: str, skeleton: Skeleton) -> Row:
         foot = (-0.99 * (thigh + shin), 1.2 * wide, 2.55)
         out = float(bind[JOINT["upperarm_l"]][1]) + 0.07 * h
         palms = (trunk + 0.06 * h, out, 0.022 * h)
-        return Row(0.068 * h, 1.55, 0.0, -0.35, (foot, foot), ((-0.1, 0.0, -1.0),) * 2, palms)
+        return Row(0.068 * h, 1.55, 0.0, -0.75, (foot, foot), ((-0.1, 0.0, -1.0),) * 2, palms)
     shoulder = 1.0 * arm + 0.04 * h
     out = float(bind[JOINT["upperarm_l"]][1]) + 0.01 * h
     if posture == "plank":
@@ -112,7 +112,7 @@ def row(posture: str, skeleton: Skeleton) -> Row:
         foot = (-float(np.sqrt(max((0.985 * long) ** 2 - (hip - heel) ** 2, 0.0))), 0.9 * wide, tucked)
         pitch = float(np.arccos(np.clip((shoulder - hip) / trunk, -1.0, 1.0)))
         ahead = trunk * float(np.sin(pitch))
-        return Row(hip, pitch, 0.0, -0.25, (foot, foot), ((0.1, 0.0, -1.0),) * 2, (ahead, out, 0.022 * h))
+        return Row(hip, pitch, 0.0, -0.6, (foot, foot), ((0.1, 0.0, -1.0),) * 2, (ahead, out, 0.022 * h))
     if posture != "fours":
         raise ValueError(f"no such posture: {posture}")
     hip = knee + 0.995 * thigh

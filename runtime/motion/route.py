@@ -396,6 +396,58 @@ class Route:
                     self._plant(hand, a, a + 0.4 * duration, place, self.bed)
         self.now = end
 
+    # -- beds ------------------------------------------------------------------------------
+
+    @property
+    def on_bed(self) -> bool:
+        """Whether one lies on something."""
+        return self.low and abs(self.bed - self.floor) > 0.05
+
+    def lie(self, middle: Triple, head: float, duration: float) -> None:
+        """Onto a bed beside which one stands: sits down on its edge, then swings the legs up and lies back.
+
+        head: heading in which the head lies
+        """
+        away = self.at[:2] - np.array(middle[:2])
+        self.travel(None, float(np.arctan2(away[1], away[0])))
+        seat = self.at[:2] - seat_distance(self.skeleton, middle[2] - self.floor) * _ahead(self.heading)
+        self.sit((float(seat[0]), float(seat[1]), middle[2]), self.heading, 0.42 * duration)
+        start, end = self.now, self.now + 0.58 * duration
+        self.bed, self.posture, self.seat = middle[2], "lying", None
+        turn = float(wrap(head + np.pi - self.heading))
+        self._move(start, start + 0.8 * (end - start), np.array(middle[:2]) - self.at[:2], turn)
+        self.stances.append(Stance(start + 0.1 * (end - start), end, "lying", middle[2]))
+        self.sits.append(Sit(end, end + 0.02, False, (float(seat[0]), float(seat[1]), middle[2])))
+        self._swing_feet(start, end, [self._low(k, "lying") for k in (0, 1)], middle[2], True)
+        self.now = end
+
+    def leave_bed(self, to: Array | None, duration: float) -> None:
+        """Sits up on the edge of the bed, on the side of ``to`` (None: the left), with the feet on the floor."""
+        if to is None:
+            to = self.at[:2] + 0.95 * _ahead(self.heading + 0.5 * np.pi)
+        way = to - self.at[:2]
+        heading = float(np.arctan2(way[1], way[0]))
+        reach = seat_distance(self.skeleton, self.bed - self.floor)
+        edge = to - reach * _ahead(heading)
+        seat = (float(edge[0]), float(edge[1]), self.bed)
+        start, end = self.now, self.now + duration
+        self.sits.append(Sit(start - 0.02, start, True, seat))
+        self._move(start + 0.15 * duration, end, edge - self.at[:2], float(wrap(heading - self.heading)))
+        self.stances.append(Stance(start, start + 0.9 * duration, "standing", self.bed))
+        self.posture, self.seat, self.bed = "sitting", seat, self.floor
+        stand = np.array([*to, self.floor])
+        places = [self._stance(stand, self.heading, k, 1.0) for k in (0, 1)]
+        self._swing_feet(start, end, places, self.floor, False)
+        self.now = end
+
+    def _swing_feet(self, start: float, end: float, places: list[Triple], ground: float, low: bool) -> None:
+        """Both feet through the air onto a bed or off it."""
+        for k, (a, b) in enumerate(((0.1, 0.72), (0.22, 0.86))):
+            pitch = self.row("lying").feet[k][2] if low else 0.0
+            times = (start + a * (end - start), start + b * (end - start))
+            self.steps.append(Step(k, *times, places[k], 0.0, ground, pitch, 0.08, 1.0))
+            self.feet_now[k], self.pitch_now[k] = places[k], pitch
+
     # -- seats -----------------------------------------------------------------------------
 
     def sit(self, seat: Triple, heading: float, duration: float) -> None:
@@ -466,6 +518,11 @@ class Route:
     def palms(self, t: Array) -> Feet:
         """Both palms planted on the floor at times ``t`` [T]."""
         return _tracks(t, self.palms_first, self.palm_steps)
+
+
+def _ahead(heading: float) -> Array:
+    """[2], one metre ahead."""
+    return np.array([np.cos(heading), np.sin(heading)])
 
 
 def _turned(offset: Array, angle: float) -> Array:

@@ -107,7 +107,7 @@ class Scene:
             return []
         performer = self.performers[name]
         rng = seeded(self.seed, name, 3)
-        turn, down = relative_gaze(eyes[name], performer.yaw, performer.low.tilt, eyes[main])
+        turn, down = relative_gaze(eyes[name], performer.yaw, performer.low.looks, eyes[main])
         near = 1.0 - np.clip((np.abs(wrap(turn)) - 1.5) / 0.6, 0.0, 1.0)
         away = wander(self.t + 40.0 * rng.random(), rng, 5.0)
         weight = near * (1.0 - np.clip(3.0 * (away - 0.9), 0.0, 1.0)) * plateau(self.t, -1, 0, 1e6, 2e6)
@@ -137,7 +137,7 @@ class Scene:
         else:
             return GazePull(zero, zero, 0.0 * weight, gaze.share)
         eye = eyes[performer.plan.name]
-        turn_to, down_to = relative_gaze(eye, performer.yaw, performer.low.tilt, at)
+        turn_to, down_to = relative_gaze(eye, performer.yaw, performer.low.looks, at)
         point_track = np.broadcast_to(at, (len(self.t), 3))
         return GazePull(turn_to, down_to, weight, gaze.share, point_track)
 

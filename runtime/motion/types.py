@@ -85,6 +85,7 @@ class TargetPoint:
     gaze: where one looks when looking at it; object: its id where it is a movable thing
     facing: heading a person takes to use it; seat: middle of the seat's surface, if it can be sat on
     character: the person's name, if it is one
+    bed: middle of the surface, and heading of the head on it, if it can be lain on
     """
 
     position: Point
@@ -93,6 +94,7 @@ class TargetPoint:
     facing: float | None = None
     seat: Point | None = None
     character: str | None = None
+    bed: tuple[Point, float] | None = None
 
 
 @dataclass(frozen=True, eq=False)

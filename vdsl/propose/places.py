@@ -73,7 +73,14 @@ def _spot_point(spot: Spot, world: World) -> TargetPoint:
     floor = floor_under(world, spot.position)
     seat = spot.position if spot.name.startswith("seat") else None
     gaze = (x, y, z if z > floor + 0.3 else floor + 1.2)
-    return TargetPoint(spot.position, gaze, facing=spot.facing, seat=seat)
+    return TargetPoint(spot.position, gaze, facing=spot.facing, seat=seat, bed=_bed(spot))
+
+
+def _bed(spot: Spot | None) -> tuple[Point, float] | None:
+    """Where one can lie: the middle of the surface, and the heading of the head."""
+    if spot is None or not spot.name.startswith("lie"):
+        return None
+    return spot.position, spot.facing if spot.facing is not None else 0.0
 
 
 def _person_point(name: str, state: SceneState, near: Point, height: float) -> TargetPoint:
@@ -117,7 +124,9 @@ def _object_point(item: WorldObject, state: SceneState, near: Point) -> TargetPo
         contact = (centre[0], centre[1], min(centre[2], floor + 1.1))
     gaze = centre if top is None else (centre[0], centre[1], top.position[2])
     facing = seat.facing if seat is not None else (stand.facing if stand is not None else None)
-    return TargetPoint(contact, gaze, facing=facing, seat=seat.position if seat is not None else None)
+    bed = _bed(next((s for s in item.spots if s.name.startswith("lie")), None))
+    place = seat.position if seat is not None else None
+    return TargetPoint(contact, gaze, facing=facing, seat=place, bed=bed)
 
 
 def _best_stand(item: WorldObject, near: Point) -> Spot | None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -80,7 +80,7 @@ def grip_of(item: WorldObject) -> tuple[float, float, float]:
 
 def _placed(placement: Placement, state: SceneState, report: Report) -> ActorState | None:
     # Here: places needs this module's state, and placing people needs places.
-    from .places import approach, seat_of
+    from .places import seat_of
 
     if placement.posture == "sitting":
         seat = seat_of(placement.at, state, placement.character)
@@ -98,6 +98,30 @@ def _placed(placement: Placement, state: SceneState, report: Report) -> ActorSta
         x, y, _ = seat.position
         floor = floor_under(state.world, seat.position)
         return ActorState((x, y, floor), heading, "sitting", seat.position)
+    if placement.posture == "lying":
+        lain = _lain(placement, state)
+        if lain is not None:
+            return lain
+    standing = _standing(placement, state, report)
+    if standing is None or placement.posture == "standing":
+        return standing
+    return replace(standing, posture=placement.posture)
+
+
+def _lain(placement: Placement, state: SceneState) -> ActorState | None:
+    """On the back on what has room to lie; None where that is the floor."""
+    from .places import target_point
+
+    bed = target_point(placement.at, state, (0.0, 0.0, 0.0)).bed
+    if bed is None:
+        return None
+    (x, y, _), head = bed
+    return ActorState((x, y, floor_under(state.world, bed[0])), head + math.pi, "lying", bed[0])
+
+
+def _standing(placement: Placement, state: SceneState, report: Report) -> ActorState | None:
+    from .places import approach
+
     crowd: Discs = tuple((x, y, _APART - 0.25, z) for x, y, _, z in state.people())
     stop = approach(placement.at, state, placement.character, start=None, taken=crowd)
     stop = stop or approach(placement.at, state, placement.character, start=None)
@@ -131,8 +155,8 @@ def _has_seat(target: Target, state: SceneState) -> bool:
 def _facing(actor: ActorState, facing: Target, state: SceneState) -> ActorState:
     from .places import target_point
 
-    if actor.posture == "sitting":
-        return actor  # a chair decides where one faces
+    if actor.seat is not None:
+        return actor  # a chair or a bed decides where one faces
     gaze = target_point(facing, state, actor.position).gaze
     dx, dy = gaze[0] - actor.position[0], gaze[1] - actor.position[1]
     if math.hypot(dx, dy) < 0.05:

@@ -286,6 +286,9 @@ def _where_to(
         return None
     if clip.seat == "down":
         return beat.target
+    if clip.posture == "lying" and target is not None and target.bed is not None:
+        there = actor.seat is not None and math.dist(actor.seat, target.bed[0]) < 0.3
+        return None if there and actor.posture == "lying" else beat.target
     goes = not any(v.duration > 0 and _plays(v.timeline) for v in clip.variants) or clip.lead
     if goes and beat.target is not None:
         return beat.target

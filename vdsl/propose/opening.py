@@ -113,7 +113,7 @@ def _across(part: WorldObject) -> Array:
     assert part.hinge is not None
     middle, half, yaw = part.hinge.solids(part.ajar)
     if not len(middle):
-        return np.array([0.0, 1.0])
+        return np.asarray(part.hinge.closed[:2, 1])
     widest = half[int((half[:, 0] * half[:, 1] * half[:, 2]).argmax())]
     angle = yaw + (math.pi / 2 if widest[1] <= widest[0] else 0.0)
     return np.array([math.cos(angle), math.sin(angle)])

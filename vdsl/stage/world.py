@@ -153,6 +153,10 @@ class _Builder:
         solids = self._packed_solids()
         levels = tuple(Level(z, tuple(rects)) for z, rects in sorted(self.floors.items()))
         kept = [_with_clear_spots(o, solids, levels) for o in self.objects]
+        for k, item in enumerate(kept):
+            if item.hinge is not None and item.mesh is not None:
+                own = np.full(len(item.mesh.faces), item.hinge.owner, np.int32)
+                kept[k] = replace(item, mesh=self._glazed(item.mesh, time, own))
         walls = tuple(Wall(s.point(s.start), s.point(s.end), s.height, s.base) for s in self.walls)
         return World(
             self.definition.name,
@@ -452,7 +456,7 @@ class _Builder:
             np.array(handle if handle is not None else middle.tolist(), np.float64),
             item.world_from_object,
             item.id,
-            np.stack([built.centre, built.half], axis=1),
+            _one_box(built),
             part.way,
         )
         matrix = hinge.matrices(part.ajar)
@@ -496,6 +500,14 @@ def _spot(spot: PropSpot, matrix: Matrix) -> Spot:
     turn = math.atan2(matrix[1, 0], matrix[0, 0])
     facing = None if spot.facing is None else math.remainder(spot.facing + turn, 2 * math.pi)
     return Spot(spot.name, (x, y, z), facing)
+
+
+def _one_box(built: BuiltProp) -> NDArray[np.float64]:
+    """[B, 2, 3]: the box around all boxes of a part, as centre and half extents; none where it has none."""
+    if not len(built.centre):
+        return np.zeros((0, 2, 3))
+    low, high = (built.centre - built.half).min(0), (built.centre + built.half).max(0)
+    return np.array([[(low + high) / 2, (high - low) / 2]])
 
 
 def _bounds(mesh: Mesh, matrix: Matrix) -> tuple[tuple[float, float, float], tuple[float, float, float]]:

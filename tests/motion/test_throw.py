@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from motion.scenes import FPS, at, person, thing
@@ -63,3 +65,13 @@ def test_what_is_sent_off_leaves_from_where_it_lies() -> None:
     assert np.allclose(way[0], (0.4, 0.0, 0.0), atol=1e-6)
     assert np.allclose(way[-1], (3.5, 0.0, 0.0), atol=0.02)
     assert way[:, 2].max() > 0.05
+
+
+def test_one_turns_to_whom_one_throws_after_taking_the_thing_from_elsewhere() -> None:
+    clip = replace(THROW, faces="second")
+    ball = thing(0.1, 0.5, 0.8, 0.1)
+    task = Task(clip, target=at(0.1, 0.5, 0.9, object=1), second=at(3.0, 0.0, 1.3, character="ben"))
+    actors = {"anna": person(heading=np.pi / 2), "ben": person(x=3.0, heading=np.pi)}
+    motion = perform(actors, {"anna": task}, {1: ball}, FPS, 1)
+    assert abs(motion.end_actors["anna"].heading) < 0.2
+    assert [thing for _, thing in motion.end_actors["ben"].held] == [1]

@@ -28,6 +28,7 @@ _EVERY_WAY = 64
 #: Metres: what is held higher than this above its foot stands on the floor, not on the table.
 _TALL = 0.55
 _BESIDE_TABLE = ((7.9, 6.3), (4.1, 6.3), (3.4, 8.2), (8.6, 8.2))
+_BETWEEN = (5.85, 6.0)
 _AROUND = ((7.5, 7.2), (4.5, 7.2), (8.6, 5.0), (3.4, 5.0))
 
 
@@ -83,12 +84,13 @@ def action_script(definition: ActionDef, catalog: Catalog, cast: tuple[str, str]
     words = definition.example.split()
     small: list[str] = []
     big: list[str] = []
+    kicked = any(move.kind == "send" for move in definition.variants[0].part.moves)
     for name in definition.props:
         prop = catalog.get("prop", name)
         if not isinstance(prop, PropDef):
             raise NoTrialError(f"the action `{definition.name}` is tried with `{name}`, which is no prop")
         grip = prop.shape().grip
-        (small if grip is not None and grip[2] < _TALL else big).append(name)
+        (small if grip is not None and grip[2] < _TALL and not kicked else big).append(name)
     both = PARTNER in words
     table = bool(small) or "table" in big
     big = [name for name in big if name != "table"]
@@ -100,7 +102,8 @@ def action_script(definition: ActionDef, catalog: Catalog, cast: tuple[str, str]
             along = (k - (len(small) - 1) / 2) * min(0.45, 1.3 / max(len(small), 1))
             lines.append(f"            place {name} = {name}, on top, at ({along:.2f}, -0.16)m")
         lines.append("        }")
-    for name, (x, y) in zip(big, _BESIDE_TABLE if table else _AROUND, strict=False):
+    places = _BESIDE_TABLE if table else (_BETWEEN, *_AROUND) if kicked else _AROUND
+    for name, (x, y) in zip(big, places, strict=False):
         lines.append(f"        place {name} = {name}, at ({x}, {y})m")
     start = "(6, 6)m, facing 90deg" if table else "(6.2, 5.6)m, facing -40deg"
     if both:

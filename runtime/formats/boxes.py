@@ -42,7 +42,7 @@ def surface_points(vertices: Array, faces: NDArray[np.integer], spacing: float) 
 def column_boxes(
     vertices: Array, faces: NDArray[np.integer], cell: float, most: int, above: float = -np.inf
 ) -> list[tuple[Array, Array]]:
-    """At most ``most`` boxes (low [3], high [3]) around the columns; surfaces below ``above`` do not count."""
+    """At most ``most`` boxes (low [3], high [3]) around the columns; nothing below ``above`` counts."""
     if not len(faces):
         return []
     while True:
@@ -83,8 +83,7 @@ def _boxes(points: Array, cell: float) -> list[tuple[Array, Array]]:
 
 
 def rectangles(key: NDArray[np.int64]) -> list[tuple[int, int, int, int]]:
-    """Rectangles (i0, j0, i1, j1) of equal keys that cover all cells whose key is not below 0; large ones first
-    come, first served."""
+    """Rectangles (i0, j0, i1, j1) of equal keys that cover all cells whose key is not below 0."""
     free = key >= 0
     out = []
     for i in range(key.shape[0]):
@@ -135,4 +134,4 @@ def floors(points: Array, normals: Array, cell: float = 0.25, most: int = 60) ->
             *np.minimum(low + np.array([i1, j1]) * cell, high).tolist(),
         )
         for i0, j0, i1, j1 in found
-    ]  # type: ignore[misc]
+    ]

@@ -22,7 +22,7 @@ class Bvh:
     """A motion in the file's own axes and units.
 
     names, parents: of the joints, parents first; end sites are joints without a name
-    offsets: float64 [B, 3] from each one's parent; turns: [T, B, 3, 3] local; shifts: [T, B, 3] moved by channels
+    offsets: float64 [B, 3] from each one's parent; turns: [T, B, 3, 3] local; shifts: [T, B, 3] by channels
     """
 
     names: tuple[str, ...]

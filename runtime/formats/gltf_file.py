@@ -341,11 +341,12 @@ class _Checker:
             if not isinstance(plain, dict):
                 self.fail("a material in it is no set of values")
             self.numbers(plain, "baseColorFactor", 4)
-            texture = plain.get("baseColorTexture")
-            if texture is not None:
-                if not isinstance(texture, dict):
+            self.numbers(material, "emissiveFactor", 3)
+            looked_up = plain.get("baseColorTexture")
+            if looked_up is not None:
+                if not isinstance(looked_up, dict):
                     self.fail("a material in it is no set of values")
-                self.index(texture, "index", "textures", required=True)
+                self.index(looked_up, "index", "textures", required=True)
 
     def _skin(self, skin: dict[str, Any]) -> None:
         joints = skin.get("joints")
@@ -359,13 +360,16 @@ class _Checker:
             if accessor["type"] != "MAT4" or accessor["count"] < len(joints):
                 self.fail("a skeleton in it has fewer bind matrices than joints")
 
+    def _dicts(self, animation: dict[str, Any], key: str) -> list[dict[str, Any]]:
+        found = animation.get(key)
+        if not isinstance(found, list) or not all(isinstance(x, dict) for x in found):
+            self.fail("a motion in it has no channels")
+        if len(found) > limits.CHANNELS:
+            self.fail(f"a motion in it has {len(found):,} channels; {limits.CHANNELS:,} are the most")
+        return found
+
     def _animation(self, animation: dict[str, Any]) -> None:
-        channels, samplers = animation.get("channels"), animation.get("samplers")
-        for found in (channels, samplers):
-            if not isinstance(found, list) or not all(isinstance(x, dict) for x in found):
-                self.fail("a motion in it has no channels")
-            if len(found) > limits.CHANNELS:
-                self.fail(f"a motion in it has {len(found):,} channels; {limits.CHANNELS:,} are the most")
+        channels, samplers = self._dicts(animation, "channels"), self._dicts(animation, "samplers")
         for sampler in samplers:
             times = self.index(sampler, "input", "accessors", required=True)
             self.index(sampler, "output", "accessors", required=True)

@@ -28,17 +28,25 @@ class _Beside(Resolver):
     def __init__(self, path: Path, folder: Path) -> None:
         self.path, self.folder = path, folder
         self.read = 0
+        self.refused: ModelFileError | None = None
 
     def get(self, name: str) -> bytes:
-        found = beside(self.path, str(name).strip(), self.folder)
+        try:
+            return self._bytes(str(name).strip())
+        except ModelFileError as error:  # trimesh would go on without: it is told afterwards
+            self.refused = self.refused or error
+            raise
+
+    def _bytes(self, name: str) -> bytes:
         self.read += 1
         if self.read > limits.IMAGES:
             raise ModelFileError(self.path, f"it names more than {limits.IMAGES} other files")
+        found = beside(self.path, name, self.folder)
         if not found.is_file():
-            raise FileNotFoundError(name)  # trimesh goes on without
+            raise FileNotFoundError(name)  # what is missing is done without
         data = read_bytes(found)
-        if found.suffix.lower() not in (".mtl", ""):
-            decode(found, data)
+        if found.suffix.lower() != ".mtl":
+            decode(self.path, data)
         return data
 
     def keys(self) -> list[str]:
@@ -56,8 +64,9 @@ def read_mesh(path: Path, folder: Path) -> Model:
     about = outline(path, folder)
     kind = path.suffix.lower()[1:]
     options: dict[str, Any] = {"process": False, "maintain_order": True}
+    beside_it = _Beside(path, folder)
     if kind == "obj":
-        options |= {"resolver": _Beside(path, folder), "split_objects": True, "group_material": True}
+        options |= {"resolver": beside_it, "split_objects": True, "group_material": True}
     try:
         with np.errstate(all="ignore"):
             loaded = trimesh.load_scene(io.BytesIO(read_bytes(path)), file_type=kind, **options)
@@ -72,6 +81,8 @@ def read_mesh(path: Path, folder: Path) -> Model:
         raise ModelFileError(path, "there is not enough memory for it") from None
     except Exception as error:  # its readers raise whatever a broken file leads to
         raise ModelFileError(path, f"it does not read: {_said(error)}") from None
+    if beside_it.refused is not None:
+        raise beside_it.refused
     if not pieces:
         raise ModelFileError(path, "it has no triangles")
     if sum(len(p.faces) for p in pieces) > limits.TRIANGLES:

@@ -23,7 +23,7 @@ MOTIONS = (".bvh", ".glb", ".gltf")
 
 @dataclass(frozen=True)
 class Outline:
-    """nodes: names of its things, in order; clips: names of its motions; skinned: it has a skeleton with skin.
+    """nodes: names of its things, in order; clips: names of its motions; skinned: it has skin on a skeleton.
 
     y_up: whether the format's upward axis is Y
     """

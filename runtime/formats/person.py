@@ -1,7 +1,7 @@
 """A skinned glTF as a person: our skeleton in its proportions, its mesh in our bind pose, on our joints.
 
-Assumes nothing of the file but what :mod:`.gltf` guarantees. Guarantees a :class:`runtime.body.build.Body` like
-any other: facing +X, feet on z = 0, as tall as asked, every vertex on joints of ours.
+Assumes nothing of the file but what :mod:`.gltf` guarantees. Guarantees a :class:`~runtime.body.build.Body`
+like any other: facing +X, feet on z = 0, as tall as asked, every vertex on joints of ours.
 """
 
 from __future__ import annotations
@@ -253,7 +253,7 @@ def _weights(joint_of: NDArray[np.int64], skin: Skin) -> tuple[NDArray[np.int32]
 
 
 def _skeleton(at: Array, points: Array, skin: Skin, joint_of: NDArray[np.int64], height: float) -> Skeleton:
-    """Our skeleton with the file's joints where it has them, the same on both sides, and the rest by proportion."""
+    """Our skeleton with the file's joints where it has them, both sides the same; the rest by proportion."""
     default = make_skeleton(BodySpec(height=float(np.clip(height, 0.7, 2.4)))).bind * (
         height / float(np.clip(height, 0.7, 2.4))
     )

@@ -51,7 +51,7 @@ def bind_turns(rig: Rig, found: Match) -> Array:
 
 
 def posed(rig: Rig, turns: Array) -> Array:
-    """float64 [B, 3]: where the bones are after the turns, lengths kept; roots stay (turned about the origin)."""
+    """float64 [B, 3]: where the bones are after the turns, lengths kept; roots turn about the origin."""
     at = np.zeros_like(rig.position)
     for i, parent in enumerate(rig.parents):
         if parent < 0:

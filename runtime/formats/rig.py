@@ -269,9 +269,9 @@ def _with_spine(rig: Rig, found: dict[str, int]) -> dict[str, int]:
         if len(between) > 1:
             found["spine"] = between[0]
     if "head" not in found and chest >= 0:
-        arm_bones = {b for a in arms for b in [a]}
-        tops = [i for i in range(len(rig.names))
-                if chest in rig.chain(i)[:-1] and not arm_bones & set(rig.chain(i)) and not rig.children[i]]  # fmt: skip
+        leaves = [i for i, below in enumerate(rig.children) if not below]
+        chains = {i: set(rig.chain(i)) for i in leaves if i != chest}
+        tops = [i for i, chain in chains.items() if chest in chain and not chain & set(arms)]
         if tops:
             top = max(tops, key=lambda i: float(rig.position[i, 2]))
             path = rig.chain(top)[rig.chain(top).index(chest) + 1 :]

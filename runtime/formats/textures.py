@@ -26,7 +26,7 @@ def decode(path: Path, data: bytes) -> Pixels:
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
-            image = Image.open(io.BytesIO(data), formats=_FORMATS)
+            image: Image.Image = Image.open(io.BytesIO(data), formats=_FORMATS)
             width, height = image.size
             if width * height > limits.IMAGE_PIXELS:
                 raise ModelFileError(path, f"a texture of it has {width} x {height} pixels; that is too many")
@@ -52,7 +52,7 @@ def sampled(pixels: Pixels, uv: NDArray[np.float64]) -> NDArray[np.float64]:
 
 
 def on_faces(pixels: Pixels, uv: NDArray[np.float64], faces: NDArray[np.integer]) -> NDArray[np.float64]:
-    """Linear RGBA [F, 4] of faces [F, 3] whose corners lie at ``uv`` [V, 2]: the mean of a few places on each."""
+    """Linear RGBA [F, 4] of faces [F, 3] whose corners lie at ``uv`` [V, 2]: the mean of a few places."""
     out = np.zeros((len(faces), 4))
     for share in _PLACES:
         rgba = sampled(pixels, np.einsum("k,fkc->fc", np.array(share), uv[faces]))

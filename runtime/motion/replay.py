@@ -226,8 +226,8 @@ def _lowered(hip: Array, ankle: Array, standing: NDArray[np.bool_], leg: float, 
     return smooth(maximum_filter1d(over, wide), 0.25 * wide)
 
 
-def _feet(place: Array, pitch: Array, lift: Array, standing: Array, ground: Array) -> Feet:
-    air = np.where(standing > 0.5, 0.0, 1.0)
+def _feet(place: Array, pitch: Array, lift: Array, standing: NDArray[np.bool_], ground: Array) -> Feet:
+    air = np.where(standing, 0.0, 1.0)
     return Feet(place=place, pitch=pitch, lift=lift, air=air, run=np.zeros_like(air), ground=ground)
 
 
@@ -270,8 +270,8 @@ def _lay(part: Figure, replay: Replay, first: NDArray[np.int64], share: Array, w
         elif parent >= 0:
             world[:, j] = world[:, parent] @ base[:, j]
     local = base.copy()
-    for j in np.flatnonzero(fit.known):
-        local[:, j] = blend(base[:, j], captured[:, j], weight)
+    for joint in np.flatnonzero(fit.known):
+        local[:, joint] = blend(base[:, joint], captured[:, joint], weight)
     hips = replay.placed(_between(fit.hips, first, share))
     root = part.position[:, 0] + weight[:, None] * (hips - part.position[:, 0])
     placed = forward_kinematics(part.skeleton, local, root)

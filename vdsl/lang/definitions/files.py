@@ -31,7 +31,7 @@ ENDINGS = {"prop": MODELS, "set": MODELS, "cast": FIGURES, "action": MOTIONS}
 GROUND = "ground"
 #: Height of a person from a file where nothing is said, metres.
 PERSON = 1.72
-LONGEST_CLIP = 120.0
+SHORTEST, TALLEST = 0.7, 2.4
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -182,7 +182,10 @@ def _fitted(reader: Reader, model: ModelFile) -> ModelFile:
         )
     up = reader.word("up", "", ("y", "z"))
     turn = reader.angle("turn", 0.0)
-    return replace(model, up=up, turn=turn, **dict(list(sizes.items())[:1]))
+    return replace(
+        model, up=up, turn=turn, scale=sizes.get("scale"), height=sizes.get("height"),
+        length=sizes.get("length"), width=sizes.get("width"),
+    )  # fmt: skip
 
 
 # --- kinds ----------------------------------------------------------------------------
@@ -224,6 +227,10 @@ def _cast(
     definition: ast.FileDefinition, reader: Reader, model: ModelFile, about: Outline, report: Report
 ) -> FileCastDef | None:
     height = reader.length("height", PERSON)
+    if not SHORTEST <= height <= TALLEST:
+        help = f"from {SHORTEST:g}m to {TALLEST:g}m"
+        report.error("VDS067", reader.span, label=f"nobody is {height:g}m tall", help=help)
+        height = PERSON
     up = reader.word("up", "", ("y", "z"))
     turn = reader.angle("turn", 0.0)
     reader.done()

@@ -118,7 +118,7 @@ def action_script(definition: ActionDef, catalog: Catalog, cast: tuple[str, str]
             '    area floor, at (-6, -6)m, size (12, 12)m, floor plain, floor-color "#e9e5da" {',
             *lines,
             f"        spot start, at {start}",
-            "        spot other, at (6.7, 6)m, facing 180deg",
+            f"        spot other, at ({8.4 if kicked else 6.7}, 6)m, facing 180deg",
             "    }",
             "}",
             f"character {ACTOR} = {cast[0]}",

@@ -4,7 +4,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 STAMP := $(VENV)/.installed
 
-.PHONY: demo test lint bench clean
+.PHONY: demo test lint bench reference clean
 
 demo: $(STAMP)
 	$(BIN)/vdsc compile examples/coffee.vds
@@ -19,6 +19,10 @@ lint: $(STAMP)
 
 bench: $(STAMP)
 	$(BIN)/vdsc bench
+
+# The pages of docs/library, with their pictures, from the library itself.
+reference: $(STAMP)
+	$(BIN)/python -m vdsl.pipeline.reference docs/library
 
 # torch goes first and pinned: asked for by another package, PyPI's newest build
 # brings several gigabytes of CUDA along.

@@ -14,7 +14,7 @@ from .curves import plateau, ramp
 from .figure import Figure
 from .hands import MIRROR, Hands
 from .partner import LIE, partner_place
-from .rotations import blend, dot, rot_y, rot_z, rot_zyx, turned, unit, wrap
+from .rotations import blend, dot, norm, rot_y, rot_z, rot_zyx, turned, unit, wrap
 from .types import Reach
 
 Array = NDArray[np.float64]
@@ -250,6 +250,8 @@ class HandTracks:
             at = at + shift[k]
             if layer.shake is not None:
                 at = at + layer.shake[:, None] * np.array([0.0, 0.0, 1.0])
+            if layer.place_of not in ("", "floor", "held"):
+                at = _at_arms_length(at, figure, k)
             over = w + total[k] * (1 - w)
             share = w / np.maximum(over, 1e-6)
             out[k] += share[:, None] * (at - out[k])
@@ -324,6 +326,16 @@ class Contacts:
     """What :meth:`Performer.arms` needs of contacts."""
 
     tracks: HandTracks
+
+
+def _at_arms_length(at: Array, figure: Figure, k: int) -> Array:
+    """A place [T, 3], drawn in to where the arm ends: the body cannot lean for what goes along with it."""
+    shoulder = figure.shoulders()[k]
+    way = at - shoulder
+    far = norm(way)
+    return np.asarray(
+        shoulder + way * np.minimum(1.0, 0.97 * figure.arm_length / np.maximum(far, 1e-6))[:, None]
+    )
 
 
 def reach_layer(

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 from numpy.typing import NDArray
 
 from .acting import Performer, fade, relative_gaze
 from .contacts import SIDE, Contacts, HandTracks, Held, Layer, Wield, holding_weight, reach_layer
-from .curves import plateau, wander
+from .curves import plateau, ramp, wander
 from .face import GazePull
 from .figure import Figure
 from .hinges import followed, handle_track, openness
@@ -94,7 +96,9 @@ class Scene:
         for window in plan.windows:
             for gaze in window.timeline.gazes:
                 start = window.at(gaze.start)
-                end = window.at(gaze.end) if gaze.end < 1.0 else 1e9  # to the end: on into what follows
+                end = (
+                    window.at(gaze.end) if gaze.end < 1.0 else min(1e9, window.until)
+                )  # on into what follows
                 weight = fade(self.t, start, end)
                 pulls.append(self._pull(performer, gaze, window, weight, eyes))
         return pulls
@@ -168,6 +172,10 @@ class Scene:
                     tilt[SIDE[side]] += tip.angle * plateau(t, *times)
             for reach in window.timeline.reaches:
                 layer = self._reach(performer, window, reach)
+                if layer is not None and np.isfinite(window.until):
+                    layer = replace(
+                        layer, weight=layer.weight * (1 - ramp(t, window.until, window.until + 0.6))
+                    )
                 if layer is not None:
                     layers.append(layer)
         wield = Wield.of(performer.channels)
@@ -191,6 +199,9 @@ class Scene:
         if reach.to in ("target", "second"):
             point = window.second if reach.to == "second" else window.target
             place = self._point(point, held_id, arrive)
+            if place is not None and reach.palm == "ahead":  # pushed at the chest, however high it is
+                chest = 0.72 * performer.height + performer.plan.actor.state.position[2]
+                place = np.minimum(place, [np.inf, np.inf, chest])
             if point is not None and point.object in self.parts:
                 track = handle_track(self.rest[point.object], self.parts[point.object])
                 place = followed(track, self.t, arrive, window.at(reach.leave))

@@ -47,7 +47,9 @@ class Performer:
         self.style = Style(plan.route, plan.manner, self.feet, t, fps, rng)
         self.channels = Channels(self.frames)
         for window in plan.windows:
-            self.channels.perform(window.timeline, window.start, window.duration, t, fps, window.hands)
+            self.channels.perform(
+                window.timeline, window.start, window.duration, t, fps, window.hands, window.until
+            )
         self.figure = Figure(self.skeleton, self.frames)
         self._speed()
         self._idle()
@@ -249,7 +251,10 @@ class Performer:
         pull = ankle - hips
         far = np.linalg.norm(pull, axis=-1, keepdims=True)
         ankle = hips + pull * np.minimum(1.0, 0.9995 * leg / np.maximum(far, 1e-6))
-        low = (self.low.share, self.low.poles) if self.low.any else None
+        across = np.stack([-np.sin(self.yaw), np.cos(self.yaw), np.zeros(self.frames)], axis=1)
+        apart = 2.2 * np.sin(self.channels["knees.spread"]) * self.low.share
+        poles = self.low.poles + MIRROR[..., None] * apart[:, None] * across
+        low = (self.low.share, poles) if self.low.any else None
         self.figure.legs(ankle, yaw, pitch, toes, np.broadcast_to(spread, yaw.shape), low)
 
     # -- arms -----------------------------------------------------------------------------

@@ -24,7 +24,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from .curves import keyed, plateau, springy
+from .curves import keyed, plateau, ramp, springy
 from .types import Timeline
 
 Array = NDArray[np.float64]
@@ -100,8 +100,10 @@ class Channels:
         t: Array,
         fps: float,
         hands: Mapping[str, str],
+        until: float = np.inf,
     ) -> None:
-        """Adds a clip's keys and beats, played from ``start`` for ``duration`` seconds."""
+        """Adds a clip's keys and beats, played from ``start`` for ``duration`` seconds; gone after
+        ``until``."""
         u = (t - start) / max(duration, 1e-6)
         found: dict[str, Array] = {}
         for track in timeline.tracks:
@@ -120,6 +122,11 @@ class Channels:
             envelope = plateau(u, beat.start, beat.start + fade, beat.end - fade, beat.end)
             swing = np.sin(2 * np.pi * (beat.count * (u - beat.start) / max(length, 1e-6) + beat.phase))
             found[name] = found.get(name, self._zero) + beat.amplitude * envelope * swing
+        if np.isfinite(until):
+            left = 1.0 - ramp(t, until, until + 0.6)
+            for name in found:
+                if name.split(".")[0].partition("_")[0] not in POSED or name.endswith(".weight"):
+                    found[name] = found[name] * left
         self._lay(found)
 
     def _lay(self, found: dict[str, Array]) -> None:

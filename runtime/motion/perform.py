@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from runtime.body.skeleton import JOINT
 
 from .acting import Performer
-from .plan import Plan, add_partner, begin, plan_task
+from .plan import Plan, add_partner, begin, keep, plan_task
 from .scene import Scene, seeded
 from .types import (
     Actor,
@@ -60,7 +60,7 @@ def perform(
         {n: _floor_points(p)[:frames] for n, p in scene.performers.items()},
         {n: p.yaw[:frames] for n, p in scene.performers.items()},
         {k: x[:frames].astype(np.float32) for k, x in scene.props.items()},
-        {n: _end_state(p, scene.held_at_end(n)) for n, p in plans.items()},
+        {n: _end_state(p, scene.held_at_end(n), frames / fps) for n, p in plans.items()},
         scene.end_props(),
         {n: p.touches(frames) for n, p in scene.performers.items()},
     )
@@ -99,10 +99,10 @@ def _floor_points(performer: Performer) -> Array:
     return np.concatenate([0.5 * (hips + performer.root), floor], axis=1)
 
 
-def _end_state(plan: Plan, held: tuple[tuple[str, int], ...]) -> ActorState:
+def _end_state(plan: Plan, held: tuple[tuple[str, int], ...], seconds: float) -> ActorState:
     route = plan.route
     at = (float(route.at[0]), float(route.at[1]), route.floor)
     seat: Point | None = route.seat
     if route.low and route.bed != route.floor:
         seat = (at[0], at[1], route.bed)
-    return ActorState(at, float(route.heading), route.posture, seat, held)
+    return ActorState(at, float(route.heading), route.posture, seat, held, keep(plan, seconds))

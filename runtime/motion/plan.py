@@ -29,6 +29,7 @@ from .types import (
     Gaze,
     Grasp,
     Jump,
+    Kept,
     Passage,
     Point,
     PropState,
@@ -76,6 +77,7 @@ class Window:
     target: TargetPoint | None
     second: TargetPoint | None
     partner: str | None
+    until: float = np.inf  # seconds, when what stays of it is over
 
     def at(self, share: float) -> float:
         return self.start + share * self.duration
@@ -101,6 +103,7 @@ class Plan:
     """One person's shot. Busy until ``end`` seconds; ``held`` is what each hand holds as planned so far.
 
     feelings: (word, start, end in seconds) of what shows on the face
+    kept: the window of which the last pose stays
     """
 
     name: str
@@ -115,6 +118,7 @@ class Plan:
     feelings: list[tuple[str, float, float]] = field(default_factory=list)
     end: float = 0.0
     acts: bool = False
+    kept: Window | None = None
     manner: Manner = PLAIN
 
 
@@ -128,7 +132,21 @@ def begin(name: str, actor: Actor) -> Plan:
     if state.posture in WAYS:
         seat = state.seat
     route = Route(actor.skeleton, state.position, state.heading, seat, person, state.posture)
-    return Plan(name, actor, route, dict(state.held))
+    plan = Plan(name, actor, route, dict(state.held))
+    if state.kept is not None:
+        k = state.kept
+        plan.kept = Window(k.timeline, -k.since, k.duration, dict(k.hands), k.target, k.second, k.partner)
+        plan.windows.append(plan.kept)
+    return plan
+
+
+def keep(plan: Plan, seconds: float) -> Kept | None:
+    """The pose that stays for the next shot, which begins after ``seconds``."""
+    w = plan.kept
+    if w is None or np.isfinite(w.until):
+        return None
+    still = replace(w.timeline, beats=(), grasps=(), talks=(), drives=(), steps=(), jumps=())
+    return Kept(still, seconds - w.start, w.duration, tuple(w.hands.items()), w.target, w.second, w.partner)
 
 
 def plan_task(
@@ -142,6 +160,9 @@ def plan_task(
     plan.homes = {k: p.stands for k, p in props.items() if p.stands is not None}
     route.wait(delay)
     clip_start = route.now
+    if plan.kept is not None and _moves_on(task):
+        plan.kept = replace(plan.kept, until=route.now)
+        plan.windows = [plan.kept]
     if task.fetch is not None:
         _fetch(plan, task, props, rng)
     going = _going(plan, task)
@@ -166,6 +187,7 @@ def plan_task(
     if duration > 0:
         timeline = enlarged(variant.timeline, plan.manner.amplitude)
         window = _play(plan, timeline, start, duration, task)
+        plan.kept = window if clip.hold else plan.kept
         if clip.capture is not None:
             _replay(plan, clip.capture, window)
         route.now = max(route.now, window.start + duration)
@@ -174,7 +196,7 @@ def plan_task(
         back = partner + away / max(float(np.hypot(*away)), 1e-6) * (_ROOM + 0.08)
         route.travel(back[None], route.heading, replace(going, gait=WALK, style=GaitStyle(facing="back")))
     if clip.rises:
-        route.settle("standing", task.speed)
+        _rise(route, task)
     plan.end = route.now
 
 
@@ -208,6 +230,13 @@ def _replay(plan: Plan, capture: Capture, window: Window) -> None:
     route.now = window.start
     route.carry(*replay.way(RATE), window.duration, replay.steps())
     plan.replays.append(replay)
+
+
+def _moves_on(task: Task) -> bool:
+    """Whether a task ends the pose that was held before it: by going, or by hands and posture of its own."""
+    clip, own = task.clip, task.clip.variant(task.variant).timeline
+    goes = task.path is not None or task.fetch is not None
+    return bool(goes or clip.posture or clip.seat != "keep" or own.reaches or own.steps or own.jumps)
 
 
 def _going(plan: Plan, task: Task, gait: str = "") -> Going:

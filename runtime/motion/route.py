@@ -130,6 +130,7 @@ class Route:
         self._moved = np.zeros(4)
         ground = seat[2] if seat is not None and not sits else self.floor
         self.bed = ground
+        self.bedside: Array | None = None
         self.at = np.array([*(self.seat or position)[:2], self.floor])
         foot_at = self.at if self.seat is None else np.array([*self._before(self.seat, heading), self.floor])
         self.rows: dict[str, Row] = {}
@@ -408,6 +409,7 @@ class Route:
 
         head: heading in which the head lies
         """
+        self.bedside = self.at[:2].copy()
         away = self.at[:2] - np.array(middle[:2])
         self.travel(None, float(np.arctan2(away[1], away[0])))
         seat = self.at[:2] - seat_distance(self.skeleton, middle[2] - self.floor) * _ahead(self.heading)
@@ -422,7 +424,10 @@ class Route:
         self.now = end
 
     def leave_bed(self, to: Array | None, duration: float) -> None:
-        """Sits up on the edge of the bed, on the side of ``to`` (None: the left), with the feet on the floor."""
+        """Sits up on the edge of the bed, on the side of ``to`` (None: where one came from, else
+        on the left), with the feet on the floor."""
+        if to is None:
+            to = self.bedside
         if to is None:
             to = self.at[:2] + 0.95 * _ahead(self.heading + 0.5 * np.pi)
         way = to - self.at[:2]

@@ -58,6 +58,7 @@ class ActorState:
     """Where and how a person is between two shots.
 
     position: point on the floor below the hips; heading: radians
+    kept: the pose that stays from the action before
     posture: one of :data:`POSTURES`; ``floor`` sits on the ground, ``lying`` is on the back (the head away
         from the heading), ``prone`` on the belly
     seat: middle of the surface sat or lain on
@@ -69,6 +70,24 @@ class ActorState:
     posture: str = "standing"
     seat: Point | None = None
     held: tuple[tuple[str, int], ...] = ()
+    kept: Kept | None = None
+
+
+@dataclass(frozen=True)
+class Kept:
+    """An action whose last pose stays: a lean goes on into the next shot.
+
+    since: seconds before the shot at which its timeline began; duration: seconds it took
+    hands: hand words to ``l`` / ``r``; partner: the other person's name
+    """
+
+    timeline: Timeline
+    since: float
+    duration: float
+    hands: tuple[tuple[str, str], ...]
+    target: TargetPoint | None
+    second: TargetPoint | None
+    partner: str | None
 
 
 @dataclass(frozen=True, eq=False)

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from runtime.body.skeleton import Skeleton
 from runtime.motion.types import ActionClip, Passage, Talk, TargetPoint, Task, Timeline
-from runtime.nav import Discs, obstacles, reachable
+from runtime.nav import Discs, nearest_free, obstacles, reachable
 
 from ..lang.diagnostics import Report
 from ..lang.ir import Beat, Shot, Target
@@ -90,6 +90,10 @@ def _errand(
         fetched = _fetching(beat, clip, points, state, taken, _task(clip, target, second, shot))
         if fetched is not None:
             return fetched
+    if clip.seat == "up" and actor.posture == "lying" and actor.seat is not None:
+        free = nearest_free(state.world, actor.position, state.people(but=beat.character) + taken)
+        way = np.array([actor.position, free]) if free is not None else np.zeros((0, 3))
+        return Errand(_task(clip, target, second, shot), (way,), None)
     where = _where_to(beat, clip, target, second, state)
     if where is None:
         turned = _turned_to(beat, clip, target, state)

@@ -12,7 +12,10 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 from pygltflib import GLTF2, Material, Primitive
+from scipy.sparse import csr_matrix
 
+from . import limits
+from .detail import divided
 from .errors import ModelFileError
 from .gltf_file import TRIANGLE_MODES, TYPE_WIDTH, GltfFile, read_gltf_file
 from .model import Array, Model, Piece
@@ -42,12 +45,13 @@ class Surface:
 
 @dataclass(eq=False)
 class Gltf:
-    """An open glTF."""
+    """An open glTF. detail: triangles it may still be given so that its textures can be read."""
 
     path: Path
     folder: Path
     file: GltfFile
     tree: GLTF2
+    detail: int = limits.DETAIL_TRIANGLES
     _images: dict[int, Pixels] = field(default_factory=dict)
     _accessors: dict[int, Array] = field(default_factory=dict)
 
@@ -141,14 +145,28 @@ class Gltf:
             if len(index) and index.max() >= count:
                 raise ModelFileError(self.path, "a triangle of it has corners that are not there")
         faces = _triangles(index, mode)
-        colors, glass, glow = self._colors(primitive, faces, count)
-        joints = weights = None
-        if primitive.attributes.JOINTS_0 is not None and primitive.attributes.WEIGHTS_0 is not None:
-            joints = self._wide(primitive.attributes.JOINTS_0, 4)[:count].astype(np.int64)
-            weights = self._wide(primitive.attributes.WEIGHTS_0, 4)[:count]
-            if len(joints) < count or len(weights) < count:
-                raise ModelFileError(self.path, "some of its points hang on no bone")
+        hung = self._hung(primitive, count)
+        uv, pixels = self._picture(primitive, count)
+        painted = self._painted(primitive, count)
+        if pixels is not None and self.detail > 0:
+            more = divided(points, uv, faces, pixels, len(faces) + self.detail)
+            self.detail -= len(more.faces) - len(faces)
+            faces, points, uv = more.faces, more.mix @ points, more.mix @ uv
+            painted = None if painted is None else more.mix @ painted
+            hung = None if hung is None else _mixed(more.mix, *hung)
+        colors, glass, glow = self._colors(primitive, faces, painted, uv, pixels)
+        joints, weights = (None, None) if hung is None else hung
         return Surface(points, faces.astype(np.int32), colors, glass, glow, joints, weights)
+
+    def _hung(self, primitive: Primitive, count: int) -> tuple[NDArray[np.int64], Array] | None:
+        """joints [V, 4] into the skin's and weights [V, 4]; None for what hangs on no skeleton."""
+        if primitive.attributes.JOINTS_0 is None or primitive.attributes.WEIGHTS_0 is None:
+            return None
+        joints = self._wide(primitive.attributes.JOINTS_0, 4)[:count].astype(np.int64)
+        weights = self._wide(primitive.attributes.WEIGHTS_0, 4)[:count]
+        if len(joints) < count or len(weights) < count or joints.max(initial=0) >= limits.JOINTS:
+            raise ModelFileError(self.path, "some of its points hang on bones that are not there")
+        return joints, weights
 
     def _wide(self, index: int, width: int) -> Array:
         values = self.accessor(index)
@@ -156,40 +174,50 @@ class Gltf:
             raise ModelFileError(self.path, f"its points have {values.shape[1]} numbers each, not {width}")
         return values
 
+    def _painted(self, primitive: Primitive, count: int) -> Array | None:
+        """Linear RGB [V, 3] of points, where they have colours."""
+        index = getattr(primitive.attributes, "COLOR_0", None)
+        if index is None:
+            return None
+        painted = self.accessor(index)
+        return painted[:count, :3] if len(painted) >= count and painted.shape[1] >= 3 else None
+
+    def _picture(self, primitive: Primitive, count: int) -> tuple[Array, Pixels | None]:
+        """Places [V, 2] on the texture of the material's colour, and its pixels; None where it has none."""
+        none = np.zeros((0, 2)), None
+        if primitive.material is None:
+            return none
+        plain = self.tree.materials[primitive.material].pbrMetallicRoughness
+        texture = plain.baseColorTexture if plain else None
+        if texture is None:
+            return none
+        accessor = getattr(primitive.attributes, f"TEXCOORD_{texture.texCoord or 0}", None)
+        source = self.tree.textures[texture.index].source
+        if accessor is None or source is None:
+            return none
+        uv = self._wide(accessor, 2)
+        if len(uv) < count:
+            raise ModelFileError(self.path, "some of its points have no place on the texture")
+        return uv[:count], self.image(source)
+
     def _colors(
-        self, primitive: Primitive, faces: NDArray[np.int64], count: int
-    ) -> tuple[NDArray[np.float32], bool, bool]:
+        self, primitive: Primitive, faces: NDArray[np.int64], painted: Array | None, uv: Array,
+        pixels: Pixels | None,
+    ) -> tuple[NDArray[np.float32], bool, bool]:  # fmt: skip
         """sRGB [F, 3] of faces; whether they are glass, whether they glow."""
         material = Material() if primitive.material is None else self.tree.materials[primitive.material]
         plain = material.pbrMetallicRoughness
         factor = np.array((plain.baseColorFactor if plain else None) or (1, 1, 1, 1), np.float64)
         rgba = np.tile(factor, (len(faces), 1))
-        color = getattr(primitive.attributes, "COLOR_0", None)
-        if color is not None:
-            painted = self.accessor(color)
-            if len(painted) >= count and painted.shape[1] >= 3:
-                rgba[:, :3] *= painted[faces][:, :, :3].mean(1)
-        texture = plain.baseColorTexture if plain else None
-        if texture is not None:
-            rgba *= self._textured(primitive, texture.index, texture.texCoord or 0, faces, count)
+        if painted is not None:
+            rgba[:, :3] *= painted[faces].mean(1)
+        if pixels is not None:
+            rgba *= on_faces(pixels, uv, faces)
         clear = material.alphaMode == "BLEND" and bool(len(rgba)) and float(rgba[:, 3].mean()) < 0.6
         glow = np.array(material.emissiveFactor or (0, 0, 0), np.float64)
         if glow.max(initial=0.0) > 0.5 and material.emissiveTexture is None:
             rgba[:, :3] = glow
         return srgb(rgba[:, :3]).astype(np.float32), clear, bool(glow.max(initial=0.0) > 0.5)
-
-    def _textured(
-        self, primitive: Primitive, texture: int, coordinates: int, faces: NDArray[np.int64], count: int
-    ) -> Array:
-        """Linear RGBA [F, 4]: the mean of a few places on each face."""
-        accessor = getattr(primitive.attributes, f"TEXCOORD_{coordinates}", None)
-        source = self.tree.textures[texture].source
-        if accessor is None or source is None:
-            return np.ones((len(faces), 4))
-        uv = self._wide(accessor, 2)
-        if len(uv) < count:
-            raise ModelFileError(self.path, "some of its points have no place on the texture")
-        return on_faces(self.image(source), uv, faces)
 
     def image(self, index: int) -> Pixels:
         """uint8 [H, W, 4]"""
@@ -236,6 +264,15 @@ def _piece(name: str, surface: Surface, world: Array) -> Piece:
     faces = surface.faces if np.linalg.det(world[:3, :3]) >= 0 else surface.faces[:, ::-1].copy()
     glass, glow = (np.full(len(faces), x) for x in (surface.glass, surface.glow))
     return Piece(name, points, faces, surface.colors, glass, glow)
+
+
+def _mixed(mix: csr_matrix, joints: NDArray[np.int64], weights: Array) -> tuple[NDArray[np.int64], Array]:
+    """joints and weights [V', 4] of points that are means of others: the strongest four."""
+    rows = np.repeat(np.arange(len(joints)), 4)
+    width = int(joints.max(initial=0)) + 4
+    table = (mix @ csr_matrix((weights.ravel(), (rows, joints.ravel())), (len(joints), width))).toarray()
+    strongest = np.argsort(-table, axis=1)[:, :4]
+    return strongest, np.take_along_axis(table, strongest, axis=1)
 
 
 def _triangles(index: NDArray[np.int64], mode: int) -> NDArray[np.int64]:

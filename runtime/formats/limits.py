@@ -27,6 +27,8 @@ IMAGES = 64
 PROP_TRIANGLES = 20_000
 BODY_TRIANGLES = 12_000
 SET_TRIANGLES = 120_000
+#: Triangles more that a model gets so that its textures can be read.
+DETAIL_TRIANGLES = 7_000
 #: Metres: nothing in a film is larger or smaller.
 LARGEST = 2_000.0
 SMALLEST = 0.005

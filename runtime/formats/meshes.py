@@ -12,12 +12,13 @@ from numpy.typing import NDArray
 from trimesh.resolvers import Resolver
 
 from . import limits
+from .detail import divided
 from .errors import ModelFileError
 from .gltf_file import words
-from .model import Model, Piece
+from .model import Array, Model, Piece
 from .outline import outline
 from .paths import beside, read_bytes
-from .textures import decode, on_faces, srgb
+from .textures import Pixels, decode, on_faces, srgb
 
 _GREY = (0.72, 0.71, 0.69)
 
@@ -70,8 +71,9 @@ def read_mesh(path: Path, folder: Path) -> Model:
     try:
         with np.errstate(all="ignore"):
             loaded = trimesh.load_scene(io.BytesIO(read_bytes(path)), file_type=kind, **options)
+            detail = limits.DETAIL_TRIANGLES // max(len(loaded.geometry), 1)
             pieces = [
-                _piece(path, _owner(name, about.nodes), mesh)
+                _piece(path, _owner(name, about.nodes), mesh, detail)
                 for name, mesh in loaded.geometry.items()
                 if isinstance(mesh, trimesh.Trimesh) and len(mesh.faces)
             ]
@@ -101,33 +103,46 @@ def _said(error: Exception) -> str:
     return words[:100] if words else type(error).__name__
 
 
-def _piece(path: Path, name: str, mesh: trimesh.Trimesh) -> Piece:
+def _piece(path: Path, name: str, mesh: trimesh.Trimesh, detail: int) -> Piece:
     vertices = np.asarray(mesh.vertices, np.float64).reshape(-1, 3)
     faces = np.asarray(mesh.faces, np.int64).reshape(-1, 3)
     if faces.min() < 0 or faces.max() >= len(vertices):
         raise ModelFileError(path, "a triangle of it has corners that are not there")
     if not np.isfinite(vertices[faces.ravel()]).all():
         raise ModelFileError(path, "some of its points are no numbers (NaN or infinite)")
+    vertices = np.nan_to_num(vertices)
+    picture = _picture(mesh)
+    if picture is not None:
+        pixels, uv = picture
+        more = divided(vertices, uv, faces, pixels, len(faces) + detail)
+        vertices, faces = more.mix @ vertices, more.faces
+        colors = srgb(on_faces(pixels, more.mix @ uv, faces)[:, :3]).astype(np.float32)
+    else:
+        colors = _colors(mesh, faces)
     off = np.zeros(len(faces), bool)
-    return Piece(name, np.nan_to_num(vertices), faces.astype(np.int32), _colors(mesh, faces), off, off)
+    return Piece(name, vertices, faces.astype(np.int32), colors, off, off)
+
+
+def _picture(mesh: trimesh.Trimesh) -> tuple[Pixels, Array] | None:
+    """The texture uint8 [H, W, 4] and the points' places on it [V, 2], v down; None where there is none."""
+    if mesh.visual.kind != "texture" or mesh.visual.uv is None:
+        return None
+    material = mesh.visual.material
+    image = getattr(material, "image", None) or getattr(material, "baseColorTexture", None)
+    uv = np.asarray(mesh.visual.uv, np.float64)
+    if image is None or len(uv) < len(mesh.vertices) or not np.isfinite(uv).all():
+        return None
+    small = image.convert("RGBA")
+    small.thumbnail((1024, 1024))
+    return np.asarray(small, np.uint8), np.stack([uv[:, 0], 1.0 - uv[:, 1]], 1)[: len(mesh.vertices)]
 
 
 def _colors(mesh: trimesh.Trimesh, faces: NDArray[np.int64]) -> NDArray[np.float32]:
-    """sRGB [F, 3] of faces: texture times colour, colours of faces or points, or grey."""
+    """sRGB [F, 3] of faces without a texture: of their material, their own or their points', or grey."""
     plain = np.tile(np.array(_GREY), (len(faces), 1))
     visual = mesh.visual
     if visual.kind == "texture":
-        material = visual.material
-        image = getattr(material, "image", None) or getattr(material, "baseColorTexture", None)
-        main = np.asarray(material.main_color, np.float64).reshape(-1)[:3] / 255.0
-        uv = None if visual.uv is None else np.asarray(visual.uv, np.float64)
-        if image is None or uv is None or len(uv) < len(mesh.vertices):
-            plain[:] = main
-        else:
-            small = image.convert("RGBA")
-            small.thumbnail((1024, 1024))
-            flipped = np.stack([uv[:, 0], 1.0 - uv[:, 1]], 1)
-            plain = srgb(on_faces(np.asarray(small, np.uint8), flipped, faces)[:, :3])
+        plain[:] = np.asarray(visual.material.main_color, np.float64).reshape(-1)[:3] / 255.0
     elif visual.kind == "face":
         plain = np.asarray(visual.face_colors, np.float64)[:, :3] / 255.0
     elif visual.kind == "vertex":

@@ -345,8 +345,8 @@ def test_bones_that_are_nobodys(tmp_path):
     chain = tmp_path / "c.bvh"
     chain.write_text(
         "HIERARCHY\nROOT a\n{\nOFFSET 0 0 0\nCHANNELS 3 Zrotation Xrotation Yrotation\nJOINT b\n{\n"
-        "OFFSET 0 1 0\nCHANNELS 3 Zrotation Xrotation Yrotation\nEnd Site\n{\nOFFSET 0 1 0\n}\n}\n}\nMOTION\nFrames: 2\n"
-        "Frame Time: 0.1\n0 0 0 0 0 0\n0 0 0 0 0 0\n"
+        "OFFSET 0 1 0\nCHANNELS 3 Zrotation Xrotation Yrotation\nEnd Site\n{\nOFFSET 0 1 0\n}\n}\n}\n"
+        "MOTION\nFrames: 2\nFrame Time: 0.1\n0 0 0 0 0 0\n0 0 0 0 0 0\n"
     )
     with pytest.raises(ModelFileError, match="not those of a person"):
         read_clip(chain, tmp_path)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import shutil
 from pathlib import Path
 
@@ -139,6 +140,19 @@ def catalog_of(folder: Path, text: str) -> Catalog:
     catalog = Catalog.for_script(script, report)
     assert not report.diagnostics, report.diagnostics
     return catalog
+
+
+def test_the_sample_of_the_documentation(files):
+    page = Path(__file__).resolve().parents[2] / "docs" / "import.md"
+    (text,) = re.findall(r"^```vds\n(.*?)^```", page.read_text(encoding="utf-8"), re.MULTILINE | re.DOTALL)
+    for folder in ("models", "motion"):
+        (files / folder).mkdir()
+    for source, name in (("box.glb", "models/lamp.glb"), ("robo.glb", "models/robot.glb")):
+        shutil.copy(files / source, files / name)
+    obj(files / "models" / "yard.obj", YARD)
+    bvh(files / "motion" / "walk.bvh", seconds=0.2)
+    text = text.replace('clip "Bow"', 'clip "Squat"').replace("scale 1cm", "scale 2m")
+    assert found(files, text + "\nscene yard\n(robo stroll)\n(other bow kid)\n", decode=True) == []
 
 
 def test_a_file_that_changes_is_read_again(files):

@@ -13,6 +13,7 @@ from runtime.body.skeleton import JOINT, PALETTE
 from runtime.formats import limits
 from runtime.formats.boxes import column_boxes, rectangles
 from runtime.formats.clips import read_clip
+from runtime.formats.detail import divided
 from runtime.formats.finish import piece_mesh, shell
 from runtime.formats.gltf import open_gltf
 from runtime.formats.load import load_model
@@ -20,6 +21,7 @@ from runtime.formats.model import Fit, settled
 from runtime.formats.outline import outline
 from runtime.formats.person import read_person, read_skin
 from runtime.formats.rig import plain
+from runtime.formats.textures import sampled
 from runtime.mesh import MATERIALS
 from runtime.motion.perform import perform
 from runtime.motion.types import ActionClip, Actor, ActorState, Task, Timeline, Variant
@@ -122,6 +124,28 @@ def test_a_texture_is_sampled_on_every_face(tmp_path):
     side = piece.vertices[piece.faces][:, :, 0].mean(1)
     assert np.allclose(piece.colors[side < 0.1], (1, 0, 0))
     assert np.allclose(piece.colors[side > 0.9], (0, 0, 1))
+
+
+def test_triangles_with_a_picture_are_divided_without_cracks(tmp_path):
+    points = np.array([(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0)], float)
+    faces = np.array([(0, 1, 2), (0, 2, 3)])
+    pixels = np.zeros((64, 64, 4), np.uint8)
+    pixels[20:40, 5:30] = 255
+    made = divided(points, points[:, :2], faces, pixels, 500)
+    at = made.mix @ points
+    corner = at[made.faces]
+    area = np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0])[:, 2] / 2
+    assert 50 < len(made.faces) <= 500
+    assert area.min() > 0
+    assert area.sum() == pytest.approx(1)
+    edges = np.sort(np.stack([made.faces, np.roll(made.faces, -1, 1)], -1).reshape(-1, 2), axis=1)
+    _, count = np.unique(edges, axis=0, return_counts=True)
+    ends = at[np.unique(edges, axis=0)[count == 1]]  # only the rim has edges of one triangle
+    rim = (np.isclose(ends, 0) | np.isclose(ends, 1))[..., :2]
+    assert (rim[:, 0] & rim[:, 1]).any(1).all()
+    middle = corner.mean(1)
+    white = sampled(pixels, middle[:, :2])[:, 0] > 0.5
+    assert area[white].sum() == pytest.approx(20 * 25 / 64**2, rel=0.25)
 
 
 def test_a_gltf_with_its_buffer_beside_it_or_inside(tmp_path):

@@ -253,7 +253,7 @@ def _going(plan: Plan, task: Task, gait: str = "") -> Going:
     )
     return Going(
         GAITS.get(gait or task.clip.travel, WALK), task.speed,
-        (length * manner.stride, time * manner.cadence), style, manner.wobble,
+        (length * manner.stride, time * manner.cadence), style, manner.wobble, task.stairs,
     )  # fmt: skip
 
 
@@ -318,9 +318,10 @@ def _go(plan: Plan, task: Task, going: Going, rng: np.random.Generator) -> None:
     heading = task.arrive_heading
     if path is not None:
         if clip.travel == "crawl":
-            route.settle("fours", task.speed)
-        else:
-            _rise(route, task, path)
+            _on_all_fours(plan, task, path)
+            _travel(plan, task, path, None, going, rng)
+            return
+        _rise(route, task, path)
         end = np.asarray(path, dtype=np.float64)[-1, :2]
         if heading is None and clip.seat != "down":
             heading = _facing(task, end)
@@ -334,6 +335,17 @@ def _go(plan: Plan, task: Task, going: Going, rng: np.random.Generator) -> None:
             route.travel(None, route.heading + turn, Going(speed=task.speed), rng)
         elif to is not None and (heading is not None or abs(wrap(to - route.heading)) > 0.6):
             route.travel(None, to, Going(speed=task.speed), rng)
+
+
+def _on_all_fours(plan: Plan, task: Task, path: Array) -> None:
+    """Turns to where the way begins while still standing, then goes down: it is hard to turn there."""
+    route = plan.route
+    d = np.asarray(path, dtype=np.float64)[:, :2] - route.at[:2]
+    ahead = next((v for v in d if np.hypot(*v) > 0.3), d[-1])
+    if not route.low:
+        _rise(route, task, path)
+        route.travel(None, float(np.arctan2(ahead[1], ahead[0])), Going(speed=task.speed))
+    route.settle("fours", task.speed)
 
 
 def _facing(task: Task, at: Array) -> float | None:

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from runtime.body.skeleton import JOINT, Skeleton
+from runtime.world import Stairs
 
 from .curves import ramp, smooth
 
@@ -81,6 +82,40 @@ def resampled(at: Array, path: Array | None) -> Array:
     eased = chord + smooth(line - chord, 4.0)
     fade = np.minimum(1.0, np.minimum(s, arc[-1] - s) / 0.3)[:, None]
     return eased * fade + line * (1 - fade)
+
+
+def climbing(line: Array, stairs: tuple[Stairs, ...], step: float) -> Array:
+    """How many times slower one gets on at each point of a line [N, 3]: a tread takes the time of a step."""
+    slow = np.ones(len(line))
+    for flight in stairs:
+        u, beside, within = _on(flight, line)
+        inside = (u > -0.5 * flight.run) & (u < flight.run * (flight.steps - 0.5)) & beside & within
+        slow = np.where(inside, max(step / flight.run, 1.0), slow)
+    return slow
+
+
+def tread(place: Array, stairs: tuple[Stairs, ...], heading: float) -> Array | None:
+    """Where a foot near ``place`` [3] is set on the tread there, [3]; None off all stairs."""
+    for flight in stairs:
+        (u,), (beside,), (within,) = _on(flight, place[None])
+        k = int(np.floor(u / flight.run))
+        if not (beside and within and 0 <= k < flight.steps - 1):
+            continue
+        ahead = np.array(flight.ahead)
+        up = float(np.cos(heading) * ahead[0] + np.sin(heading) * ahead[1])
+        to = (k + 0.5 - 0.14 * np.sign(up)) * flight.run
+        xy = place[:2] + (to - u) * ahead
+        return np.array([*xy, flight.low[2] + (k + 1) * flight.rise])
+    return None
+
+
+def _on(flight: Stairs, points: Array) -> tuple[Array, NDArray[np.bool_], NDArray[np.bool_]]:
+    """Of points [N, 3]: metres along a flight, whether they are within its width, and its heights."""
+    ahead = np.array(flight.ahead)
+    off = points[:, :2] - np.array(flight.low[:2])
+    across = np.abs(off[:, 0] * ahead[1] - off[:, 1] * ahead[0])
+    z = points[:, 2]
+    return off @ ahead, across < 0.5 * flight.width, (z > flight.low[2] - 0.1) & (z < flight.high[2] + 0.1)
 
 
 def lengths(line: Array) -> Array:

@@ -100,9 +100,9 @@ def row(posture: str, skeleton: Skeleton) -> Row:
         foot = (0.995 * (thigh + shin), 1.3 * wide, -1.15)
         return Row(0.062 * h, -1.57, 0.0, 0.12, (foot, foot), ((0.15, 0.1, 1.0),) * 2, swing=-0.12, splay=0.3)
     if posture == "prone":
-        foot = (-0.99 * (thigh + shin), 1.2 * wide, 2.55)
-        out = float(bind[JOINT["upperarm_l"]][1]) + 0.07 * h
-        palms = (trunk + 0.06 * h, out, 0.022 * h)
+        foot = (-0.9995 * (thigh + shin), 1.2 * wide, 2.55)
+        out = float(bind[JOINT["upperarm_l"]][1]) + 0.08 * h
+        palms = (trunk + 0.13 * h, out, 0.022 * h)
         return Row(0.068 * h, 1.55, 0.0, -0.75, (foot, foot), ((-0.1, 0.0, -1.0),) * 2, palms)
     shoulder = 1.0 * arm + 0.04 * h
     out = float(bind[JOINT["upperarm_l"]][1]) + 0.01 * h

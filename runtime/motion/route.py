@@ -15,18 +15,21 @@ import numpy as np
 from numpy.typing import NDArray
 
 from runtime.body.skeleton import JOINT, Skeleton
+from runtime.world import Stairs
 
 from .curves import ease, ramp, smooth, wander
 from .feet import Feet, Footing, Step, foot_track, rolled
 from .gait import (
     WALK,
     Gait,
+    climbing,
     lengths,
     progress,
     resampled,
     seat_distance,
     tangents,
     timing,
+    tread,
 )
 from .postures import WAYS, Row, between, row
 from .rotations import wrap
@@ -84,6 +87,7 @@ class Going:
     """How a way is gone: gait, style, pace and what is particular about the person's steps.
 
     stride: factors on step length and on the time between steps; wobble: metres the way swerves
+    stairs: flights on whose treads feet are set
     """
 
     gait: Gait = WALK
@@ -91,6 +95,7 @@ class Going:
     stride: tuple[float, float] = (1.0, 1.0)
     style: GaitStyle = field(default_factory=GaitStyle)
     wobble: float = 0.0
+    stairs: tuple[Stairs, ...] = ()
 
 
 class Route:
@@ -218,6 +223,9 @@ class Route:
         if not goes and abs(last) < 0.12:
             return
         step = gait.step * self.skeleton.height * going.stride[0] * (0.62 if face else 1.0)
+        if going.stairs and goes:
+            slow = climbing(line, going.stairs, step)
+            arc = np.concatenate([[0.0], np.cumsum(np.diff(arc) * 0.5 * (slow[1:] + slow[:-1]))])
         period = gait.period * np.sqrt(self.skeleton.height / 1.7) * going.stride[1] / speed
         times = timing(float(arc[-1]), step / period, gait.ramp / speed, first, last, speed)
         xyz, yaw = self._root_way(line, arc, tangent, times, first, last)
@@ -287,6 +295,9 @@ class Route:
                 pitch = 0.0 if ends else 0.62 * style.toes
             high = style.lift * self.scale * (0.3 if ends else 1.0)
             ground = float(at[2])
+            trodden = tread(np.array([*place[:2], ground]), going.stairs, facing) if going.stairs else None
+            if trodden is not None and not self.low:
+                place, ground = (float(trodden[0]), float(trodden[1]), place[2]), float(trodden[2])
             self.steps.append(Step(foot, self.now + lift, self.now + land, place, gait.run, ground, pitch,
                                    high, style.stiff))  # fmt: skip
             self.feet_now[foot], self.pitch_now[foot] = place, pitch

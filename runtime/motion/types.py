@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from runtime.body.skeleton import Skeleton
-from runtime.world import Hinge
+from runtime.world import Hinge, Stairs
 
 Point = tuple[float, float, float]
 
@@ -411,6 +411,7 @@ class Task:
         where this ends); no points at all: it is taken from here, before going; None: it is taken on arrival
     fetch_heading: heading to take it with
     manner: how it is done, a word of :data:`runtime.motion.manner.MANNERS`, or ""
+    stairs: flights of the set, on whose treads feet are set
     passages: doors that are shut on these ways, in their order; each lies on one of them
     """
 
@@ -425,6 +426,7 @@ class Task:
     fetch: NDArray[np.float64] | None = None
     fetch_heading: float | None = None
     manner: str = ""
+    stairs: tuple[Stairs, ...] = ()
     passages: tuple[Passage, ...] = ()
 
 

@@ -56,7 +56,11 @@ def errand(
     taken: places where others of the same line are about to stand
     """
     found = _errand(beat, clip, shot, state, skeletons, taken, report, ways)
-    return None if found is None else replace(found, task=replace(found.task, manner=beat.manner))
+    return (
+        None
+        if found is None
+        else replace(found, task=replace(found.task, manner=beat.manner, stairs=state.world.stairs))
+    )
 
 
 def _errand(

@@ -21,7 +21,7 @@ from .outfit import (
 from .pieces import Piece, hemmed, parted, parted_all, shade
 from .sheets import ellipsoid_patch, on_chest, plate
 from .spec import Colour
-from .surface import Patch, clip
+from .surface import Patch, clip, cull
 
 _MAIL: Colour = (0.36, 0.38, 0.42)
 
@@ -34,24 +34,28 @@ def armour(f: Figure) -> list[Piece]:
         f, 0.0105 * h, 0.05, hem, sleeve_length(f, 0.97), neckline(f, 0.026 * h, -0.001 * h, 0.010 * h),
         tail=skirt_tail(f, hem - 0.06 * h, 0.02), rule="skirt", faces=820,
     )  # fmt: skip
-    mail = Piece(mail.patch, _MAIL, "top", mail.solid, rule="skirt", material="cloth")
+    breast = _breast(f)
+    hidden = cull(mail.patch, lambda p: np.maximum(breast(p), p[:, 2] - f.level(0.55)), 0.003)
+    mail = Piece(hidden, _MAIL, "top", mail.solid, rule="skirt", material="cloth")
     fore = along_arm(f, f.p.upper_arm + 0.22 * f.p.forearm, 0.05)
     looks = parted(mail, lambda p: -fore(p), shade(steel, 0.92), "plate")
     pieces = [hemmed(q, 0.010 * h) for q in looks]
     pieces += [_cuirass(f), *_cops(f)]
-    emblem = on_chest(
-        _breast(f), np.linspace(0.0, 0.024, 3) * h, np.linspace(f.level(0.30), f.level(0.86), 5), 0.004 * h
-    )
-    pieces.append(
-        Piece(plate(emblem, emblem - (0.008, 0, 0), (-0.3, 0.0, 1.0)), f.spec.accent_color, "badge", None)
-    )
+    middle = f.level(0.62)
+    for wide, tall in ((0.010, 0.075), (0.038, 0.011)):
+        at = middle + (0.022 * h if wide > tall else 0.0)
+        bar = on_chest(
+            breast, np.linspace(0.0, wide, 3) * h, np.linspace(at - tall * h, at + tall * h, 5), 0.004 * h
+        )
+        cross = plate(bar, bar - np.array([0.008, 0.0, 0.0]), (-0.3, 0.0, middle))
+        pieces.append(Piece(cross, f.spec.accent_color, "badge", None))
     return pieces
 
 
 def _breast(f: Figure) -> Field:
     h = f.p.height
-    body = trunk(f, 0.0190 * h, 0.10)
-    skirt = skirt_tail(f, f.level(-0.30), 0.10)
+    body = trunk(f, 0.0220 * h, 0.10)
+    skirt = skirt_tail(f, f.level(-0.30) - 0.06 * h, 0.10)
 
     def field(p: Points) -> Values:
         keel = 0.010 * h * np.exp(-((p[:, 1] / (0.03 * h)) ** 2)) * np.clip((p[:, 0] - 0.02) / 0.05, 0.0, 1.0)
@@ -61,7 +65,7 @@ def _breast(f: Figure) -> Field:
             * np.sin((p[:, 2] - f.level(0.25)) * 2 * np.pi / (0.045 * h))
             * (p[:, 2] < f.level(0.25))
         )
-        return smooth_min(body(p), skirt(p) - 0.006 * h, 0.02 * h) - keel - lames
+        return smooth_min(body(p), skirt(p) - 0.010 * h, 0.02 * h) - keel - lames
 
     return field
 
@@ -86,11 +90,11 @@ def _cops(f: Figure) -> list[Piece]:
     """Pauldrons and elbow cops, going half way with their joints."""
     h, steel, k = f.p.height, f.spec.top_color, limb(f)
     shoulder = f.joint("upperarm_l")
-    dome = ellipsoid_patch((0.0, 0.0, 0.0), (0.060 * h * k, 0.052 * h * k, 0.046 * h * k), 10, 7)
+    dome = ellipsoid_patch((0.0, 0.0, 0.0), (0.054 * h * k, 0.050 * h * k, 0.046 * h * k), 10, 7)
     upper = dome.vertices + shoulder + np.array([0.004 * h, 0.012 * h, 0.006 * h])
-    lower = 0.86 * dome.vertices + arm_point(f, 0.055 * h)
+    lower = 0.90 * dome.vertices + arm_point(f, 0.055 * h)
     elbow = ellipsoid_patch(
-        arm_point(f, f.p.upper_arm, -0.006 * h), (0.034 * h * k, 0.034 * h * k, 0.034 * h * k), 8, 6
+        arm_point(f, f.p.upper_arm, -0.006 * h), (0.041 * h * k, 0.040 * h * k, 0.041 * h * k), 10, 7
     )
     return [
         Piece(Patch(upper, dome.faces), steel, "plate", None, rule="half-shoulder_l", symmetry="side"),

@@ -22,10 +22,10 @@ from .features import head_pieces, limb_pieces
 from .field import Field, gradient
 from .head import Head
 from .legwear import bare_legs, bottom, shoes
-from .pieces import PARTS, Piece, other_side, tucked
+from .pieces import PARTS, Piece, drawn_in, other_side, tucked
 from .skeleton import PALETTE, Skeleton
 from .spec import BodySpec
-from .surface import Patch, cull
+from .surface import Patch, clip
 from .wardrobe import top
 from .weights import (
     beard_weights,
@@ -40,7 +40,7 @@ from .weights import (
 )
 
 #: Raised with every change of shape, so that old cache files are not read.
-VERSION = 9
+VERSION = 11
 
 
 @dataclass(frozen=True, eq=False)
@@ -101,29 +101,62 @@ def _pieces(figure: Figure) -> list[Piece]:
     cover = upper[0].solid
     under = [*head_pieces(figure), *limb_pieces(figure), *bottom(figure)]
     if cover is not None:
-        under = [_kept_under(figure, p, cover) if p.tucks else p for p in under]
+        hem = _hem(figure, upper)
+        under = [_kept_under(figure, p, cover, hem) if p.tucks else p for p in under]
+    if figure.spec.bottom == "overalls":
+        upper = [_inside_overalls(figure, p, under) for p in upper]
     return [*under, *upper, *extras(figure, upper), *shoes(figure), *bare_legs(figure)]
 
 
-def _kept_under(figure: Figure, piece: Piece, cover: Field) -> Piece:
-    """What is worn under the top: drawn in below it, and left out where it could never be seen."""
-    inner = tucked(piece, cover)
+def _kept_under(figure: Figure, piece: Piece, cover: Field, hem: float) -> Piece:
+    """What is worn under the top: drawn in below it, and left out behind where it could never be seen."""
+    h = figure.p.height
+    if piece.rule == "face":
+        nape, back = figure.level(1.12), figure.joint("neck")[0]
+
+        def bare(p: NDArray[np.float64]) -> NDArray[np.float64]:
+            return np.asarray(
+                cover(p) + 10.0 * np.maximum(0.0, p[:, 0] - back + 0.01) + np.maximum(0.0, p[:, 2] - nape)
+            )
+
+        return drawn_in(tucked(piece, cover), bare, 0.010, -1.0)
     if piece.part != "bottom":
-        return inner
-    line = _hem(figure) + 0.05 * figure.p.height
-    return replace(inner, patch=cull(inner.patch, lambda p: np.maximum(cover(p), line - p[:, 2]), 0.004))
+        return tucked(piece, cover)
+    inner = drawn_in(piece, cover, 0.010 * h, hem)
+    line = hem + 0.010 * h
+
+    def hidden(p: NDArray[np.float64]) -> NDArray[np.float64]:
+        return np.asarray(np.maximum(np.maximum(cover(p) + 0.003, line - p[:, 2]), p[:, 0] - 0.01))
+
+    return replace(inner, patch=clip(inner.patch, hidden, keep_outside=True))
 
 
-def _hem(figure: Figure) -> float:
-    """About the lowest edge of tops worn over a bottom."""
-    return figure.level(0.02)
+def _inside_overalls(figure: Figure, piece: Piece, under: list[Piece]) -> Piece:
+    """The top without what overalls hide of it."""
+    shell = next((p.solid for p in under if p.part == "over" and p.solid is not None), None)
+    if shell is None or piece.solid is None:
+        return piece
+    waist = figure.level(0.20)
+    hidden: Field = lambda p: np.maximum(shell(p) - 0.004, p[:, 2] - waist)  # noqa: E731
+    return replace(piece, patch=clip(piece.patch, hidden, keep_outside=True))
+
+
+def _hem(figure: Figure, upper: list[Piece]) -> float:
+    """Height of the lower edge of a top, behind."""
+    lowest = []
+    for piece in upper:
+        if piece.solid is upper[0].solid:
+            v = piece.patch.vertices
+            lowest.append(v[(v[:, 0] < 0.0) & (v[:, 1] < 0.03 * figure.p.height), 2].min(initial=np.inf))
+    return float(min(lowest))
 
 
 def _finish(
     figure: Figure, piece: Piece
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.int64], NDArray[np.float64]]:
     """Vertices, normals, faces and dense weights of a piece, both sides where it has two."""
-    vertices, normals, faces = piece.patch.vertices, _normals(figure, piece), piece.patch.faces
+    vertices, faces = piece.patch.vertices, piece.patch.faces
+    normals = _whole(_normals(figure, piece))
     weights = _weights(figure, piece, normals)
     if piece.symmetry == "whole":
         return vertices, normals, faces, weights
@@ -134,7 +167,7 @@ def _finish(
     if piece.symmetry == "half":
         seam = np.abs(vertices[:, 1]) < 1e-9
         normals[seam, 1] = 0.0
-        normals[seam] /= np.maximum(np.linalg.norm(normals[seam], axis=1, keepdims=True), 1e-9)
+        normals = _whole(normals)
         index[seam] = np.flatnonzero(seam)
     faces = np.concatenate([faces, index[twin.patch.faces]])
     flipped = normals * np.array([1.0, -1.0, 1.0])
@@ -176,6 +209,12 @@ def _oval(figure: Figure, points: NDArray[np.float64]) -> NDArray[np.float64]:
     return _unit(d) * share[:, None]
 
 
+def _whole(normals: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Normals of unit length; where there is none (the edge of a plate, on Y = 0) they face forward."""
+    length = np.linalg.norm(normals, axis=1, keepdims=True)
+    return np.where(length > 1e-6, normals / np.maximum(length, 1e-6), np.array([1.0, 0.0, 0.0]))
+
+
 def _unit(v: NDArray[np.float64]) -> NDArray[np.float64]:
     return v / np.maximum(np.linalg.norm(v, axis=1, keepdims=True), 1e-9)
 
@@ -199,7 +238,7 @@ def _weights(figure: Figure, piece: Piece, normals: NDArray[np.float64]) -> NDAr
     if piece.rule == "cape":
         return cape_weights(figure, points)
     if piece.rule == "skirt":
-        return body_weights(figure, points, side_blend=0.09, normals=normals)
+        return body_weights(figure, points, side_blend=0.042, normals=normals)
     own = {
         "face": face_weights,
         "brow": brow_weights,

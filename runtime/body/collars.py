@@ -33,7 +33,7 @@ def collar(
     ahead = 0.5 + 0.5 * np.cos(turn)
     fold = (0.026 - 0.028 * ahead) * h
     point = np.exp(-(((turn - 0.55) / 0.38) ** 2))
-    fall = drop * (0.034 + 0.020 * point) * h
+    fall = (drop * (0.034 + 0.020 * point) + 0.010 * (1.0 - ahead)) * h
     wide = r * (1.30 + 0.16 * ahead)
     rows = [
         _ring(f, turn, 0.98 * r + 0.0 * turn, fold - 0.030 * h),
@@ -67,7 +67,7 @@ def stand_up(
     """A band standing around the neck, almost closed in front."""
     h, r = f.p.height, neck_radius(f)
     turn = np.linspace(gap, np.pi, 12)
-    low = (-0.052 + 0.032 * (0.5 - 0.5 * np.cos(turn))) * h
+    low = (-0.052 + 0.016 * (0.5 - 0.5 * np.cos(turn))) * h
     rows = [
         _ring(f, turn, 1.34 * r + 0.0 * turn, low),
         _ring(f, turn, 1.20 * r + 0.0 * turn, low + 0.55 * high * h),

@@ -141,7 +141,7 @@ def _apron(f: Figure, solid: Field, upper: list[Piece]) -> list[Piece]:
     )
     pocket = plate(pouch, pouch - np.array([0.012 * h, 0.0, 0.0]), (-0.5, 0.0, f.level(0.0)))
     loop = np.concatenate([[outer[0, -1] + (0.0, -0.004 * h, 0.0)], _around_neck(f, 1.38, 0.03, 9)[3:]])
-    band = _round_waist(f, solid, f.level(0.24), 0.010, 0.005)
+    band = _round_waist(f, solid, f.level(0.24), 0.010, 0.003)
     return [
         Piece(cloth, colour, "over", None, rule="skirt", material="cloth"),
         Piece(pocket, shade(colour, 0.88), "pocket", None, rule="skirt", material="cloth"),
@@ -158,7 +158,7 @@ def _overlaid(f: Figure, upper: list[Piece], outline: Field, lift: float, colour
     for piece in upper:
         if piece.solid is not upper_solid or piece.symmetry != "half":
             continue
-        surface = np.abs(upper_solid(piece.patch.vertices)) < 0.0015  # leaves out its hems
+        surface = np.abs(upper_solid(piece.patch.vertices)) < 0.004  # leaves out its hems
         patch = clip(
             compact(Patch(piece.patch.vertices, piece.patch.faces[surface[piece.patch.faces].all(1)])),
             outline,
@@ -265,7 +265,7 @@ def _backpack(f: Figure, solid: Field) -> list[Piece]:
     tall, wide, deep = (0.135, 0.098, 0.062) if space else (0.118, 0.078, 0.056)
     middle_z = f.level(0.62)
     back = on_chest(solid, np.array([0.0]), np.array([middle_z]), 0.0, -1.0)[0, 0]
-    centre = back + np.array([-0.72 * deep * h, 0.0, 0.0])
+    centre = back + np.array([-0.50 * deep * h, 0.0, 0.0])
     polar, turn = np.linspace(0.0, np.pi, 9)[:, None], np.linspace(0.0, np.pi, 13)
     box = lambda v: np.sign(v) * np.abs(v) ** 0.45  # noqa: E731
     unit = np.stack(

@@ -56,7 +56,9 @@ def _trousers(f: Figure) -> list[Piece]:
     h = f.p.height
     suit = f.spec.top == "spacesuit"
     grow = (0.0190 if suit else 0.0042) * h
-    body, leg = trunk(f, grow, 0.0, chest=False), trouser_leg(f, grow)
+    over = f.spec.bottom == "overalls" and not suit  # worn over the shirt
+    body = trunk(f, 0.0175 * h, 0.20, chest=False) if over else trunk(f, grow, 0.0, chest=False)
+    leg = trouser_leg(f, 0.008 * h if over else grow)
     low_ring, high_ring = 0.55 * f.p.knee, 0.5 * (f.p.knee + f.p.hip[1])
 
     def solid(p: Points) -> Values:
@@ -81,15 +83,17 @@ def _trousers(f: Figure) -> list[Piece]:
     waist = f.level(0.34 if f.spec.bottom == "overalls" else 0.14)
     patch = surface_of(f, shape, low - 0.04 * h, waist + 0.05 * h, False, 650)
     patch = clip(patch, both(above(low, 0.06 if f.spec.shoes != "boots" else 0.0), lambda p: p[:, 2] - waist))
-    piece = Piece(patch, f.spec.bottom_color, "bottom", shape, rule="legs", material="cloth")
+    piece = Piece(
+        patch, f.spec.bottom_color, "over" if over else "bottom", shape, rule="legs", material="cloth"
+    )
     return [hemmed(piece, 0.010 * h)]
 
 
 def _bib(f: Figure, trousers: Piece) -> list[Piece]:
     """The bib of overalls and its straps, over whatever the top is."""
     h, colour = f.p.height, f.spec.bottom_color
-    body = trunk(f, 0.0165 * h, 0.16)
-    up = np.array([f.level(x) for x in (0.30, 0.44, 0.60, 0.74)])
+    body = trunk(f, 0.0175 * h, 0.20)
+    up = np.array([f.level(x) for x in (0.28, 0.44, 0.60, 0.74)])
     wide = np.array([0.092, 0.066, 0.054, 0.050]) * h * (1.0 + 0.4 * max(f.heavy, 0.0))
     outer = on_chest(body, wide[:, None] * np.linspace(0.0, 1.0, 5), up, 0.004 * h)
     bib = plate(outer, outer - np.array([0.012 * h, 0.0, 0.0]), (-0.4, 0.0, f.level(0.5)))
@@ -104,7 +108,7 @@ def _bib(f: Figure, trousers: Piece) -> list[Piece]:
     strap = strand(np.concatenate([ahead, crest[None], behind]), 0.009 * h, 5)
     buckle = ellipsoid_patch(ahead[0], (0.006 * h, 0.010 * h, 0.010 * h), 6, 4)
     return [
-        Piece(bib, colour, "bottom", None, material="cloth"),
+        Piece(bib, colour, "over", None, material="cloth"),
         Piece(strap, shade(colour, 0.85), "belt", None, symmetry="side"),
         Piece(buckle, _BRASS, "badge", None, symmetry="side"),
     ]

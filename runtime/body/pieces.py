@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from .field import Field, gradient
+from .field import Field, Values, gradient
 from .spec import Colour
 from .surface import Patch, compact, mirror, rim, split
 
@@ -93,7 +93,20 @@ def tucked(piece: Piece, cover: Field) -> Piece:
     """The piece drawn back a little where it lies under ``cover``, so that it stays under it when posed."""
     assert piece.solid is not None
     vertices = piece.patch.vertices
-    push = 0.55 * np.clip(-cover(vertices) - 0.003, 0.0, 0.012)
+    return _moved_in(piece, 0.55 * np.clip(-cover(vertices) - 0.003, 0.0, 0.012))
+
+
+def drawn_in(piece: Piece, cover: Field, depth: float, hem: float) -> Piece:
+    """The piece brought at least ``depth`` metres below ``cover`` wherever it is above a hem."""
+    vertices = piece.patch.vertices
+    above = np.clip((vertices[:, 2] - hem) / 0.02 + 0.3, 0.0, 1.0)
+    return _moved_in(piece, above * np.clip(cover(vertices) + depth, 0.0, 0.02) * (cover(vertices) < 0.02))
+
+
+def _moved_in(piece: Piece, push: Values) -> Piece:
+    """The piece's vertices ``push`` [N] metres further in."""
+    assert piece.solid is not None
+    vertices = piece.patch.vertices
     slope = gradient(piece.solid, vertices)
     if piece.symmetry == "half":
         slope[np.abs(vertices[:, 1]) < 1e-9, 1] = 0.0

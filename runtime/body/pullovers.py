@@ -108,7 +108,7 @@ def _shoulders(f: Figure) -> Piece:
     body, limb_ = trunk(f), arm_loft(f)
     solid: Field = lambda p: smooth_min(body(p), limb_(p), 0.026 * h)  # noqa: E731
     end = 0.30 * f.p.upper_arm
-    patch = surface_of(f, solid, f.level(0.50), f.level(1.14), True, 420)
+    patch = surface_of(f, solid, f.level(0.50), f.level(1.35), True, 460)
     patch = clip(
         patch, both(both(above(f.level(0.56)), along_arm(f, end)), lambda p: p[:, 2] - f.level(1.08))
     )

@@ -53,7 +53,7 @@ def robe(f: Figure) -> list[Piece]:
     line = neckline(f, 0.030 * h, -0.001 * h, 0.010 * h)
     piece = garment(
         f, 0.0130 * h, 0.10, hem, sleeve_length(f, 0.94), line, flare=0.030 * h,
-        tail=skirt_tail(f, hem, 0.26), rule="skirt", faces=1300,
+        tail=skirt_tail(f, hem, 0.34), rule="skirt", faces=1300,
     )  # fmt: skip
 
     stole: list[Field] = [

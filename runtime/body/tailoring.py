@@ -222,7 +222,7 @@ def shirt_front(f: Figure, button: float, down: float = 1.0) -> Piece:
     solid = trunk(f, 0.0066 * h, 0.10)
     patch = polygonise(solid, (-0.1 * h, -0.03, low), (0.2 * h, 0.12 * h, high), 0.0075 * h / 1.7)
     patch = half(simplify(patch, 260, solid))
-    cut, shown = neckline(f, 0.040 * h, -0.004 * h, 0.012 * h), front(f, button, 0.016 * h, down)
+    cut, shown = neckline(f, 0.018 * h, -0.004 * h, 0.012 * h), front(f, button, 0.016 * h, down)
     patch = clip(patch, both(cut, shown))
     return Piece(patch, f.spec.shirt_color, "shirt", solid, material="cloth")
 

@@ -1,0 +1,180 @@
+"""Clothes, hats and everything worn: every word builds, stays within its triangles and hangs right."""
+
+from __future__ import annotations
+
+from dataclasses import fields
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+from scipy.spatial import cKDTree
+
+from runtime.body.build import Body, make_body
+from runtime.body.pieces import PARTS
+from runtime.body.skeleton import JOINT, PALETTE
+from runtime.body.spec import (
+    BACKWEAR,
+    BOTTOM_KINDS,
+    FACIAL_HAIR,
+    HAIR_STYLES,
+    HATS,
+    NECKWEAR,
+    OVERWEAR,
+    TOP_KINDS,
+    BodySpec,
+)
+
+from .poses import posed, turn
+
+_SEATED = {
+    **{f"thigh_{s}": turn((0, 1, 0), -88.0) for s in "lr"},
+    **{f"shin_{s}": turn((0, 1, 0), 88.0) for s in "lr"},
+}
+
+
+def _outfits() -> list[BodySpec]:
+    """As few people as wear every word there is, on bodies that differ."""
+    columns = {
+        "top": TOP_KINDS,
+        "hat": HATS,
+        "hair": HAIR_STYLES,
+        "bottom": BOTTOM_KINDS,
+        "facial_hair": FACIAL_HAIR,
+        "neck": NECKWEAR,
+        "over": OVERWEAR,
+        "back": BACKWEAR,
+        "shoes": ("shoes", "boots"),
+    }
+    people = []
+    for k in range(max(len(words) for words in columns.values())):
+        words = {name: each[k % len(each)] for name, each in columns.items()}
+        people.append(
+            BodySpec(
+                height=(1.2, 1.62, 1.75, 1.9)[k % 4],
+                age=(7.0, 25.0, 40.0, 75.0)[k % 4],
+                build=(0.1, 0.5, 0.95)[k % 3],
+                femininity=(0.0, 1.0, 0.5)[(k // 2) % 3],
+                belt=k % 2 == 0,
+                gloves=k % 3 == 0,
+                badge=k % 5 == 0,
+                glasses=k % 4 == 1,
+                **words,
+            )
+        )
+    return people
+
+
+OUTFITS = _outfits()
+
+
+@pytest.fixture(scope="module")
+def dressed() -> list[Body]:
+    return [make_body(spec) for spec in OUTFITS]
+
+
+def test_whatever_is_worn_is_sound(dressed: list[Body]) -> None:
+    for body in dressed:
+        mesh, spec = body.mesh, body.spec
+        assert 5_000 <= len(mesh.faces) <= 12_500, spec
+        assert np.isfinite(mesh.vertices).all()
+        assert np.allclose(np.linalg.norm(mesh.normals, axis=1), 1.0, atol=1e-3)
+        assert np.allclose(body.weights.sum(1), 1.0, atol=1e-5)
+        assert (body.weights >= 0).all()
+        assert 0 <= body.joints.min()
+        assert body.joints.max() < len(PALETTE)
+        assert mesh.parts.max() < len(PARTS)
+        low, high = mesh.vertices.min(0), mesh.vertices.max(0)
+        assert -0.02 < low[2] < 0.02, spec
+        assert spec.height - 0.03 < high[2] < spec.height + 0.22 * spec.height, spec
+        assert high[1] < 0.45 * spec.height
+        assert low[1] > -0.45 * spec.height
+
+
+def test_no_two_outfits_are_the_same_shape() -> None:
+    plain = make_body(BodySpec())
+    seen = {len(plain.mesh.vertices)}
+    for name, word in (
+        ("hat", "cap"),
+        ("neck", "tie"),
+        ("over", "apron"),
+        ("back", "cape"),
+        ("shoes", "boots"),
+    ):
+        body = make_body(BodySpec(**{name: word}))
+        assert len(body.mesh.vertices) not in seen, word
+        seen.add(len(body.mesh.vertices))
+    belted = make_body(BodySpec(belt=True, gloves=True, badge=True)).mesh
+    assert {"belt", "gloves", "badge"} <= {PARTS[p] for p in np.unique(belted.parts)}
+
+
+def test_every_feature_of_a_spec_counts_in_its_key() -> None:
+    assert all(f.name in BodySpec().key() for f in fields(BodySpec))
+
+
+def test_hats_sit_on_the_head_and_go_with_it() -> None:
+    turned = turn((0, 1, 0), 30.0)
+    for word in ("police-cap", "wizard-hat", "crown", "space-helmet"):
+        body = make_body(BodySpec(hat=word))
+        hat = np.unique(body.mesh.faces[body.mesh.parts == PARTS.index("hat")])
+        assert body.mesh.vertices[hat, 2].min() > body.skeleton.bind[JOINT["neck"], 2] - 0.05
+        moved = posed(body, {"head": turned})[hat]
+        pivot = body.skeleton.bind[JOINT["head"]]
+        rigid = (body.mesh.vertices[hat] - pivot) @ turned.T + pivot
+        assert np.abs(moved - rigid).max() < 1e-4
+
+
+def _outside_the_back(body: Body, pose: dict[str, NDArray[np.float64]]) -> NDArray[np.float64]:
+    """How far the trousers' vertices above the shirt's hem come out of its back, metres."""
+    mesh = body.mesh
+    after = posed(body, pose)
+    shirt = np.isin(mesh.parts, [PARTS.index("top"), PARTS.index("trim")])
+    faces = mesh.faces[shirt]
+    corner = after[faces]
+    flat = np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0])
+    normals = np.zeros_like(after)
+    for k in range(3):
+        np.add.at(normals, faces[:, k], flat)
+    normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-12)
+    used = np.unique(faces)
+    back = used[(np.abs(mesh.vertices[used, 1]) < 0.12) & (mesh.vertices[used, 0] < 0.0)]
+    hem = mesh.vertices[back, 2].min()
+    under = np.unique(mesh.faces[mesh.parts == PARTS.index("bottom")])
+    under = under[(mesh.vertices[under, 2] > hem + 0.004) & (mesh.vertices[under, 0] < -0.05)]
+    _, near = cKDTree(after[used]).query(after[under])
+    return np.asarray(((after[under] - after[used[near]]) * normals[used[near]]).sum(1))
+
+
+@pytest.mark.parametrize("build", [0.42, 0.95])
+@pytest.mark.parametrize("bottom", ["trousers", "shorts"])
+def test_seated_men_keep_their_trousers_under_the_shirt(build: float, bottom: str) -> None:
+    body = make_body(BodySpec(height=1.8, femininity=0.0, build=build, top="shirt", bottom=bottom))
+    out = _outside_the_back(body, _SEATED)
+    assert out.max(initial=-1.0) < 0.006
+
+
+@pytest.mark.parametrize("top", ["gown", "robe", "kimono"])
+def test_long_clothes_let_legs_step_and_sit(top: str) -> None:
+    """No edge tears, and the knees stay inside."""
+    body = make_body(BodySpec(top=top, femininity=1.0))
+    stride = {
+        "thigh_l": turn((0, 1, 0), -30.0),
+        "thigh_r": turn((0, 1, 0), 20.0),
+        "shin_r": turn((0, 1, 0), 20.0),
+    }
+    for pose, longest in ((stride, 1.0), (_SEATED, 0.30)):
+        after = posed(body, pose)
+        corner = after[body.mesh.faces]
+        assert np.linalg.norm(corner - np.roll(corner, 1, axis=1), axis=2).max() < longest
+        cloth = np.unique(body.mesh.faces[body.mesh.parts == PARTS.index("top")])
+        for side in "lr":
+            knee = body.skeleton.bind[JOINT[f"shin_{side}"]]
+            near = np.linalg.norm(body.mesh.vertices[cloth] - knee, axis=1)
+            assert near.min() > 0.03
+
+
+def test_a_long_beard_rests_on_the_chest_when_the_head_nods() -> None:
+    body = make_body(BodySpec(facial_hair="long-beard", femininity=0.0))
+    hair = np.unique(body.mesh.faces[body.mesh.parts == PARTS.index("hair")])
+    tip = hair[np.argmin(body.mesh.vertices[hair, 2])]
+    moved = posed(body, {"head": turn((0, 1, 0), 25.0)})[tip] - body.mesh.vertices[tip]
+    assert np.linalg.norm(moved) < 0.06

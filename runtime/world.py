@@ -242,7 +242,7 @@ class World:
             matrix = hinge.matrices(share)
             shift = matrix @ np.linalg.inv(part.world_from_object)
             turn = float(np.arctan2(shift[1, 0], shift[0, 0]))
-            spots = {id(s): _moved(s, shift, turn) for s in part.spots}
+            spots = {s: _moved(s, shift, turn) for s in part.spots}
             rows = np.flatnonzero(self.solids.object == k)
             if len(rows):
                 centre[rows], half[rows], yaw[rows] = hinge.solids(share)
@@ -250,7 +250,7 @@ class World:
             named = tuple(spots.values())
             objects[k] = replace(part, spots=named, low=low, high=high, world_from_object=matrix, ajar=share)
             owner = objects[hinge.owner]
-            lent = tuple(spots.get(id(s), s) for s in owner.spots)
+            lent = tuple(spots.get(s, s) for s in owner.spots)
             objects[hinge.owner] = replace(owner, spots=lent)
         solids = Solids(centre, half, yaw, self.solids.wall, self.solids.object)
         return replace(self, objects=tuple(objects), solids=solids)

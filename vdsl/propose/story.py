@@ -110,8 +110,10 @@ def advance(
 
 def propose(line: StoryLine, shot: Shot, state: SceneState, filming: Filming) -> ProposalGrid:
     """S · C proposals of one shot: the line performed, and cameras on it."""
-    stories = propose_story(state, line, filming, shot=shot)
-    return propose_cameras(shot, stories, replace(filming, world=state.world))
+    told = tell(state, line, filming, shot=shot)
+    moved = [p for p in told.end.world.objects if p.hinge is not None]
+    widest = {p.id: max(p.ajar, state.world.objects[p.id].ajar) for p in moved}  # what opens hides most open
+    return propose_cameras(shot, told.proposals, replace(filming, world=state.world.opened(widest)))
 
 
 def _errands(

@@ -224,7 +224,7 @@ class _Builder:
         x0, y0, x1, y1 = inside(room)
         matrix = placement(x, y, z, 0.0)
         spots = tuple(_spot(s, matrix) for s in room.spots)
-        low, high = (x0, y0, z), (x1, y1, z + max(h, 2.6))
+        low, high = (x0, y0, z), (x1, y1, z + (h if room.kind == "room" else 2.6))
         self.objects.append(WorldObject(owner, (room.name,), room.kind, spots, low, high, matrix))
         holes = wells(self.definition, z, z)
         if self.scenery is None or not self.scenery.own_ground:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from functools import lru_cache
+from functools import cache
 
 import numpy as np
 import pytest
@@ -35,7 +35,7 @@ def definition(name: str) -> SetDef:
     return found
 
 
-@lru_cache(maxsize=2)
+@cache
 def world(name: str) -> World:
     return build_world(definition(name), CATALOG)
 

@@ -45,7 +45,7 @@ def ways(grid: Grid, start: Array, goal: Array, count: int, radius: float) -> li
         if len(paths) == count:
             break
         cost = _discourage(grid, cost, free, path)
-    return paths
+    return [*paths[:1], *sorted(paths[1:], key=length)]
 
 
 def shortest(cost: Array, first: tuple[int, int], last: tuple[int, int]) -> NDArray[np.int64] | None:

@@ -147,6 +147,9 @@ class Performer:
         back = 0.24 * np.sin(np.clip(pitch, 0, 1.2)) * (1 - self.sitting)
         xy = self.root + shift[:, None] * across + (c["hips.forward"] + forward - 0.3 * back)[:, None] * ahead
         z = self._pelvis_height(xy, ankle, drop + c["hips.drop"])
+        if low.any:  # the hip joints stay over the root, however the trunk lies
+            above = bind[0][2] - bind[JOINT["thigh_l"]][2]
+            xy = xy + (above * low.share * np.sin(low.pitch))[:, None] * ahead
         pitch, spine_lean = pitch + low.pitch, spine_lean + low.lean
         root = np.concatenate([xy, z[:, None]], axis=1)
         up = (
@@ -234,6 +237,7 @@ class Performer:
         height = standing + s * (seated - standing)
         if low.any:
             height = height * (1 - low.share) + low.hip - low.share * drop
+            above = above * (1 - low.share * (1 - np.cos(low.pitch)))
         return np.asarray(height + above)
 
     def _stairs(self) -> Array:
@@ -404,10 +408,13 @@ class Performer:
         planted = (feet.air <= 0) & (moved < 0.004) & (feet.lift < 1e-4) & ~hanging
         for own, standing in self.replayed:
             planted[:, own] = standing
+        hands = self.tracks.weight
+        if self.low.palms.any():  # palms on their way to another place of the floor
+            hands = np.where(self.plan.route.palms(self.t).air > 0, 0.0, hands)
         return Touches(
             planted[:, :frames],
             feet.ground[:, :frames],
-            self.tracks.weight[:, :frames],
+            hands[:, :frames],
             self.goals[:, :frames],
             self.palms[:, :frames],
             self.look.fixed[:frames],

@@ -51,7 +51,7 @@ WAYS: dict[str, tuple[str, float, float]] = {
     "floor": ("standing", 1.9, -0.33),
     "lying": ("floor", 1.5, 0.0),
     "fours": ("kneeling", 0.95, -0.02),
-    "prone": ("fours", 1.0, 0.22),
+    "prone": ("plank", 1.0, 0.0),
     "plank": ("fours", 0.9, 0.06),
 }
 
@@ -97,7 +97,7 @@ def row(posture: str, skeleton: Skeleton) -> Row:
         pole = (0.2, 0.25, 1.0)
         return Row(0.056 * h, -0.28, 0.5, -0.1, (foot, foot), (pole, pole), on="knee")
     if posture == "lying":
-        foot = (0.995 * (thigh + shin), 1.3 * wide, -1.15)
+        foot = (0.985 * (thigh + shin), 1.3 * wide, -1.15)
         return Row(0.062 * h, -1.57, 0.0, 0.12, (foot, foot), ((0.15, 0.1, 1.0),) * 2, swing=-0.12, splay=0.3)
     if posture == "prone":
         foot = (-0.9995 * (thigh + shin), 1.2 * wide, 2.55)
@@ -111,12 +111,12 @@ def row(posture: str, skeleton: Skeleton) -> Row:
         hip = 0.62 * shoulder
         foot = (-float(np.sqrt(max((0.985 * long) ** 2 - (hip - heel) ** 2, 0.0))), 0.9 * wide, tucked)
         pitch = float(np.arccos(np.clip((shoulder - hip) / trunk, -1.0, 1.0)))
-        ahead = trunk * float(np.sin(pitch))
+        ahead = trunk * float(np.sin(pitch)) + 0.035 * h
         return Row(hip, pitch, 0.0, -0.6, (foot, foot), ((0.1, 0.0, -1.0),) * 2, (ahead, out, 0.022 * h))
     if posture != "fours":
         raise ValueError(f"no such posture: {posture}")
     hip = knee + 0.995 * thigh
     foot = (behind, 1.05 * wide, tucked)
     pitch = float(np.arccos(np.clip((0.87 * shoulder - hip) / trunk, -1.0, 1.0)))
-    ahead = trunk * float(np.sin(pitch))
+    ahead = trunk * float(np.sin(pitch)) + 0.035 * h
     return Row(hip, pitch - 0.12, 0.24, -0.7, (foot, foot), (down, down), (ahead, out, 0.022 * h))

@@ -379,7 +379,8 @@ class Route:
         by = ahead * np.array([np.cos(self.heading), np.sin(self.heading)])
         self._move(start + 0.1 * duration, start + 0.85 * duration, by, 0.0)
         self.posture = new
-        self.stances.append(Stance(start + 0.08 * duration, end, new, self.bed))
+        late = 0.3 if old == "prone" else 0.08  # the hands come under the chest before it rises
+        self.stances.append(Stance(start + late * duration, end, new, self.bed))
         order = (1, 0) if new != "standing" else (0, 1)
         spans = {order[0]: (0.06, 0.42), order[1]: (0.5, 0.86)}
         for foot in order:
@@ -404,8 +405,8 @@ class Route:
                 place = self._palm(hand)
                 far = np.hypot(place[0] - self.palms_now[hand][0], place[1] - self.palms_now[hand][1])
                 if far > 0.06:
-                    a = start + (0.3 if hand else 0.45) * duration
-                    self._plant(hand, a, a + 0.4 * duration, place, self.bed)
+                    a = start + (0.04 if hand else 0.2) * duration
+                    self._plant(hand, a, a + 0.42 * duration, place, self.bed)
         self.now = end
 
     # -- beds ------------------------------------------------------------------------------

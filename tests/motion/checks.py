@@ -21,7 +21,7 @@ SLIDE, SINK, HAND, GAZE = 2.0, 1.0, 3.0, 10.0  # cm, cm, cm, degrees
 #: What people's joints do, degrees: (joint, axis) to lowest and highest. Elbows and knees by their bend,
 #: the others by the angle away from straight, or the turn about the upright.
 LIMITS: dict[str, tuple[float, float]] = {
-    "elbow": (-2, 161), "knee": (-2, 160), "neck turn": (-90, 90), "neck nod": (-75, 70),
+    "elbow": (-2, 161), "knee": (-2, 163), "neck turn": (-90, 90), "neck nod": (-75, 70),
     "neck tilt": (-50, 50),
     "spine lean": (-45, 95), "spine side": (-42, 42), "spine twist": (-60, 60), "upper arm": (0, 182),
     "hip bend": (-45, 150),

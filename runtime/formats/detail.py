@@ -33,20 +33,20 @@ class Divided:
 
 def divided(points: Array, uv: Array, faces: NDArray[np.integer], pixels: Pixels, most: int) -> Divided:
     """The faces divided where the picture has more than one colour, up to ``most`` of them."""
-    faces = np.asarray(faces, np.int64)
+    current: NDArray[np.int64] = np.asarray(faces, np.int64)
     mix = identity(len(points), format="csr")
     size = float(np.ptp(points, axis=0).max()) if len(points) else 0.0
     for _ in range(ROUNDS):
-        wanted = _wanted(points, uv, faces, pixels, SHORTEST * size)
-        room = (most - len(faces)) // 4  # a divided face is four, and its neighbours are two
+        wanted = _wanted(points, uv, current, pixels, SHORTEST * size)
+        room = (most - len(current)) // 4  # a divided face is four, and its neighbours are two
         if room <= 0 or not len(wanted):
             break
-        faces, halves = _split(points, faces, wanted[:room])
+        current, halves = _split(points, current, wanted[:room])
         rows = np.repeat(np.arange(len(halves)), 2)
         half = csr_matrix((np.full(2 * len(halves), 0.5), (rows, halves.ravel())), (len(halves), len(points)))
         step = vstack([identity(len(points), format="csr"), half], format="csr")
         points, uv, mix = step @ points, step @ uv, step @ mix
-    return Divided(faces, mix)
+    return Divided(current, mix)
 
 
 def _wanted(

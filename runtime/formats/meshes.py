@@ -46,8 +46,9 @@ class _Beside(Resolver):
         if not found.is_file():
             raise FileNotFoundError(name)  # what is missing is done without
         data = read_bytes(found)
-        if found.suffix.lower() != ".mtl":
-            decode(self.path, data)
+        if found.suffix.lower() == ".mtl":
+            return _as_text(data)
+        decode(self.path, data)
         return data
 
     def keys(self) -> list[str]:
@@ -70,7 +71,10 @@ def read_mesh(path: Path, folder: Path) -> Model:
         options |= {"resolver": beside_it, "split_objects": True, "group_material": True}
     try:
         with np.errstate(all="ignore"):
-            loaded = trimesh.load_scene(io.BytesIO(read_bytes(path)), file_type=kind, **options)
+            data = read_bytes(path)
+            if kind == "obj" or (kind == "ply" and b"format ascii" in data[:200]):
+                data = _as_text(data)
+            loaded = trimesh.load_scene(io.BytesIO(data), file_type=kind, **options)
             detail = limits.DETAIL_TRIANGLES // max(len(loaded.geometry), 1)
             pieces = [
                 _piece(path, _owner(name, about.nodes), mesh, detail)
@@ -90,6 +94,11 @@ def read_mesh(path: Path, folder: Path) -> Model:
     if sum(len(p.faces) for p in pieces) > limits.TRIANGLES:
         raise ModelFileError(path, f"it has more than {limits.TRIANGLES:,} triangles")
     return Model(path, tuple(pieces), about.y_up)
+
+
+def _as_text(data: bytes) -> bytes:
+    """As UTF-8, whatever it was: numbers and names of a script are plain letters in every encoding."""
+    return data.decode("utf-8", "replace").encode("utf-8")
 
 
 def _owner(name: str, objects: tuple[str, ...]) -> str:

@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import trimesh
 
 from runtime.formats import limits
 from runtime.formats.clips import read_clip
@@ -86,6 +87,27 @@ def test_random_damage_is_refused_or_read_but_never_crashes(tmp_path):
         for read in (lambda: read_person(path, tmp_path, 1.7), lambda: read_clip(path, tmp_path)):
             with contextlib.suppress(ModelFileError):
                 read()
+
+
+@pytest.mark.parametrize("kind", ["obj", "ply", "stl", "bvh"])
+def test_random_damage_to_other_kinds(tmp_path, kind):
+    path = tmp_path / f"a.{kind}"
+    if kind in ("obj", "bvh"):
+        (obj if kind == "obj" else bvh)(path)
+    else:
+        trimesh.creation.icosphere(1).export(path)
+    data = path.read_bytes()
+    rng = np.random.default_rng(7)
+    for _ in range(40):
+        broken = bytearray(data)
+        for at in rng.integers(0, len(data), 4):
+            broken[at] = int(rng.integers(32, 127))
+        path.write_bytes(bytes(broken))
+        with contextlib.suppress(ModelFileError):
+            if kind == "bvh":
+                read_clip(path, tmp_path)
+            else:
+                settled(load_model(path, tmp_path), Fit())
 
 
 def test_a_file_that_is_too_large(tmp_path, monkeypatch):

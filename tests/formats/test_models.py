@@ -86,6 +86,13 @@ def test_an_obj_brings_its_objects_and_materials(tmp_path):
     assert np.allclose(colors["upper_half"], (0.1, 0.1, 0.8), atol=0.01)
 
 
+def test_an_obj_need_not_be_utf_8(tmp_path):
+    path = obj(tmp_path / "a.obj")
+    path.write_bytes(b"# B\xf6rse\n" + path.read_bytes())
+    path.with_suffix(".mtl").write_bytes(b"# gr\xfcn\n" + path.with_suffix(".mtl").read_bytes())
+    assert {p.name for p in load_model(path, tmp_path).pieces} == {"lower_half", "upper_half"}
+
+
 def test_an_obj_without_its_materials_is_grey(tmp_path):
     path = obj(tmp_path / "a.obj")
     path.with_suffix(".mtl").unlink()

@@ -67,7 +67,7 @@ def _bow_tie(f: Figure, solid: Field) -> list[Piece]:
     wing = np.array([[0.004, 0.0], [0.008, 0.010], [0.014, 0.028], [0.015, 0.042]]) * h
     line = at + np.stack([0.003 * h - 0.25 * wing[:, 1], wing[:, 1], 0.0 * wing[:, 0]], 1)
     bow = strand(line, wing[:, 0].tolist(), 6)
-    knot = ellipsoid_patch(at + (0.004 * h, 0.0, 0.0), (0.008 * h, 0.009 * h, 0.009 * h), 8, 5)
+    knot = ellipsoid_patch(at + np.array([0.004 * h, 0.0, 0.0]), (0.008 * h, 0.009 * h, 0.009 * h), 8, 5)
     return [
         Piece(bow, f.spec.accent_color, "neck", None, symmetry="side", material="cloth"),
         Piece(knot, shade(f.spec.accent_color, 0.8), "neck", None, symmetry="whole"),
@@ -219,8 +219,8 @@ def _waistcoat(f: Figure, solid: Field, upper: list[Piece]) -> list[Piece]:
 
 
 def _round_waist(f: Figure, solid: Field, at: float, tall: float, lift: float) -> Patch:
-    """A band around the trunk at a height, ``tall`` its half height and ``lift`` its distance as shares of the
-    body's height."""
+    """A band around the trunk at a height; ``tall``, its half height, and ``lift``, its distance, are shares
+    of the body's height."""
     h = f.p.height
     turn = np.linspace(0.0, np.pi, 17)
     rows = []
@@ -326,8 +326,8 @@ def _cape(f: Figure, solid: Field) -> list[Piece]:
     )
     out[2:, :, 0] = np.clip(flow[2:], -0.20 * h, 0.0) + folds[2:]
     low = out[0] + np.array([0.0, 0.0, 0.006 * h])
-    out[0] = cast(solid, np.stack([out[0, :, 0], out[0, :, 1], np.full(len(share), f.level(1.0) + 0.14 * h)], 1),
-                  (0.0, 0.0, -1.0), 0.26 * h) + np.array([0.0, 0.0, 0.008 * h])  # fmt: skip
+    above = np.stack([out[0, :, 0], out[0, :, 1], np.full(len(share), f.level(1.0) + 0.14 * h)], 1)
+    out[0] = cast(solid, above, (0.0, 0.0, -1.0), 0.26 * h) + np.array([0.0, 0.0, 0.008 * h])
     out[0, 0] = low[0]
     under = out + np.array([0.008 * h, 0.0, 0.0])
     clasp = strand(np.concatenate([[out[0, -1]], _around_neck(f, 1.55, 0.05, 7)[:4][::-1]]), 0.009 * h, 5)

@@ -58,7 +58,7 @@ def _brim(
     tilt: float = 0.0,
     thick: float = 0.022,
 ) -> Patch:
-    """A brim between the hat and ``reach`` (share of the radii) by the angle from the front, rising outwards."""
+    """A brim from the hat to ``reach`` (share of the radii) by the angle from the front, rising outwards."""
     share = np.array([0.0, 0.4, 0.75, 1.0])[:, None]
     r = inner + (reach(turn)[None] - inner) * share
     x = r * _RADII[0] * np.cos(turn)

@@ -1,4 +1,4 @@
-"""Clothes below the waist: trousers, shorts, skirts, overalls, shoes and boots, and the legs where they show."""
+"""Clothes below the waist: trousers, skirts, overalls, shoes and boots, and the legs where they show."""
 
 from __future__ import annotations
 
@@ -100,7 +100,8 @@ def _bib(f: Figure, trousers: Piece) -> list[Piece]:
     y = np.array([0.046, 0.052, 0.056]) * h
     ahead = on_chest(body, y[:, None], np.array([f.level(x) for x in (0.73, 0.88, 0.98)]), 0.004 * h)[:, 0]
     behind = on_chest(
-        body, np.array([0.056, 0.046, 0.030])[:, None] * h, np.array([f.level(x) for x in (0.98, 0.80, 0.36)]),
+        body, np.array([0.056, 0.046, 0.030])[:, None] * h,
+        np.array([f.level(x) for x in (0.98, 0.80, 0.36)]),
         0.004 * h, -1.0,
     )[:, 0]  # fmt: skip
     crest = 0.5 * (ahead[-1] + behind[0])
@@ -141,7 +142,7 @@ def _greaves(f: Figure, legs: list[Piece]) -> list[Piece]:
         low[0], lambda p: np.maximum(p[:, 2] - knee - 0.17 * h, knee + 0.03 * h - p[:, 2]), steel, "plate"
     )
     cop = ellipsoid_patch(
-        f.joint("shin_l") + (0.020 * h, 0.0, 0.004 * h), (0.030 * h, 0.038 * h, 0.042 * h), 9, 6
+        f.joint("shin_l") + np.array([0.020 * h, 0.0, 0.004 * h]), (0.030 * h, 0.038 * h, 0.042 * h), 9, 6
     )
     return [
         *thigh,
@@ -155,6 +156,14 @@ def boot_top(f: Figure) -> float:
     return 0.66 * f.p.knee
 
 
+def _boot(f: Figure, foot: Field) -> Field:
+    """A shoe with a shaft around the lower leg."""
+    h = f.p.height
+    shaft = union([(leg_loft(f, 0.010 * h), 0.0), (trouser_leg(f, 0.006 * h), 0.02 * h)])
+    bulk = 0.010 * h if f.spec.top == "spacesuit" else 0.0
+    return lambda p: smooth_min(foot(p), np.maximum(shaft(p) - bulk, 0.5 * f.p.ankle - p[:, 2]), 0.03 * h)
+
+
 def shoes(f: Figure) -> list[Piece]:
     """The left shoe or boot with its sole."""
     h, solid = f.p.height, shoe(f)
@@ -162,11 +171,7 @@ def shoes(f: Figure) -> list[Piece]:
     boots = f.spec.shoes == "boots"
     top_z, part = 0.12 * h, "shoes"
     if boots:
-        foot, shaft = solid, union([(leg_loft(f, 0.010 * h), 0.0), (trouser_leg(f, 0.006 * h), 0.02 * h)])
-        bulk = 0.010 * h if f.spec.top == "spacesuit" else 0.0
-        solid = lambda p: smooth_min(
-            foot(p), np.maximum(shaft(p) - bulk, 0.5 * f.p.ankle - p[:, 2]), 0.03 * h
-        )
+        solid = _boot(f, solid)
         top_z = boot_top(f) + 0.03 * h
     patch = polygonise(
         solid,

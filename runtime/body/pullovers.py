@@ -126,8 +126,8 @@ def hoodie(f: Figure) -> list[Piece]:
         [
             (
                 round_cone(
-                    nape + (-0.050 * h, 0.0, 0.0),
-                    nape + (-0.028 * h, 0.042 * h, 0.008 * h),
+                    nape + np.array([-0.050 * h, 0.0, 0.0]),
+                    nape + np.array([-0.028 * h, 0.042 * h, 0.008 * h]),
                     0.032 * h,
                     0.026 * h,
                 ),
@@ -135,14 +135,17 @@ def hoodie(f: Figure) -> list[Piece]:
             ),
             (
                 round_cone(
-                    nape + (-0.028 * h, 0.042 * h, 0.008 * h),
-                    nape + (0.026 * h, 0.046 * h, -0.020 * h),
+                    nape + np.array([-0.028 * h, 0.042 * h, 0.008 * h]),
+                    nape + np.array([0.026 * h, 0.046 * h, -0.020 * h]),
                     0.024 * h,
                     0.010 * h,
                 ),
                 0.02 * h,
             ),
-            (ellipsoid(nape + (-0.062 * h, 0.0, -0.030 * h), (0.026 * h, 0.050 * h, 0.045 * h)), 0.03 * h),
+            (
+                ellipsoid(nape + np.array([-0.062 * h, 0.0, -0.030 * h]), (0.026 * h, 0.050 * h, 0.045 * h)),
+                0.03 * h,
+            ),
         ]
     )
     pieces.append(blob(f, roll, nape, 0.11 * h, shade(f.spec.top_color, 0.9), 300))

@@ -237,7 +237,8 @@ class HandTracks:
         for layer in sorted(self.layers, key=lambda x: x.place_of == "held"):
             k, w = layer.hand, layer.weight
             if layer.place_of == "held" and layer.led is not None:
-                at = out[1 - k] + self._on_held(1 - k, layer.led[0], layer.offset)
+                along = self._on_held(1 - k, layer.led[0], layer.offset)
+                at = _slid(out[1 - k], along, figure, k)
             else:
                 at = _layer_place(layer, figure, self.yaw)
                 ahead, outward, up = layer.offset
@@ -328,6 +329,20 @@ class Contacts:
     tracks: HandTracks
 
 
+def _slid(grip: Array, along: Array, figure: Figure, k: int) -> Array:
+    """The place ``along`` [T, 3] from the other hand's ``grip`` [T, 3] on what that holds; where the arm is
+    too short for it, as far from the other hand as it is long enough."""
+    shoulder = figure.shoulders()[k]
+    limit = 0.97 * figure.arm_length
+    low, high = np.zeros(len(along)), np.ones(len(along))
+    share = high
+    for _ in range(6):
+        short = norm(grip + share[:, None] * along - shoulder) > limit
+        high, low = np.where(short, share, high), np.where(short, low, share)
+        share = 0.5 * (low + high)
+    return np.asarray(grip + np.where(low > 0.98, 1.0, low)[:, None] * along)
+
+
 def _at_arms_length(at: Array, figure: Figure, k: int) -> Array:
     """A place [T, 3], drawn in to where the arm ends: the body cannot lean for what goes along with it."""
     shoulder = figure.shoulders()[k]
@@ -387,7 +402,7 @@ def reach_layer(
 
 
 def within_reach(place: Array, xy: Array, heading: float, skeleton: Skeleton, there: int) -> Array:
-    """The place [T, 3], or where it is out of reach in frame ``there``, the point one would reach to instead."""
+    """The place [T, 3], or where it is out of reach in frame ``there``, what one would reach to instead."""
     at = place[there, :2] - xy
     distance, bearing = float(np.hypot(*at)), float(wrap(np.arctan2(at[1], at[0]) - heading))
     far = min(distance, 0.72 * skeleton.height)

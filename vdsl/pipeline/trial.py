@@ -106,6 +106,7 @@ def action_script(definition: ActionDef, catalog: Catalog, cast: tuple[str, str]
     for name, (x, y) in zip(big, places, strict=False):
         lines.append(f"        place {name} = {name}, at ({x}, {y})m")
     start = "(6, 6)m, facing 90deg" if table else "(6.2, 5.6)m, facing -40deg"
+    posture = " lying" if definition.sit == "up" else ""  # there has to be something to get up from
     if both:
         start = "(5.3, 6)m, facing 0deg"
     if definition.group == "going":
@@ -124,7 +125,7 @@ def action_script(definition: ActionDef, catalog: Catalog, cast: tuple[str, str]
             f"character {ACTOR} = {cast[0]}",
             *([f"character {PARTNER} = {cast[1]}"] if both else []),
             "scene trial = trial_floor",
-            f"{ACTOR} at start" + (f" facing {PARTNER}" if both else ""),
+            f"{ACTOR} at start" + (f" facing {PARTNER}" if both else "") + posture,
             *([f"{PARTNER} at other facing {ACTOR}"] if both else []),
             f"({definition.example}) / (static full eye-level)",
             "",

@@ -41,7 +41,7 @@ class Prepared:
     moving_surface: index of the first skinned surface; static_faces: number of static triangles
     set_casters, casters: int32, triangles that throw shadows, static and skinned; area: float32 [K], square
     metres a skinned vertex stands for; volume: occlusion of the set; stage: corners of
-    what stands in it
+    what stands in it; levels: heights of its floors
     """
 
     vertices: NDArray[np.float32]
@@ -63,6 +63,7 @@ class Prepared:
     area: NDArray[np.float32]
     volume: Volume
     stage: tuple[NDArray[np.float64], NDArray[np.float64]]
+    levels: tuple[float, ...]
 
 
 def check(scene: RenderScene) -> None:
@@ -222,9 +223,10 @@ def prepare(scene: RenderScene, style: Style) -> Prepared:
         static_faces=len(order),
         set_casters=set_casters,
         casters=(_casters(skinned, own_wall) + len(order)).astype(np.int32),
-        area=_vertex_area(skinned),
+        area=_touching_area(skinned, fitting),
         volume=occlusion_volume(static, set_casters),
         stage=stage_bounds(static, set_casters),
+        levels=scene.levels,
     )
 
 
@@ -233,6 +235,13 @@ def _casters(skinned: Mesh, wall: NDArray[np.int32]) -> NDArray[np.int32]:
     nobody = np.full(len(skinned.faces), -1, np.int32)
     found = key_casters(skinned, nobody, nobody)
     return found[wall[found] < 0]
+
+
+def _touching_area(skinned: Mesh, fitting: NDArray[np.int32]) -> NDArray[np.float32]:
+    """Surface of each skinned vertex that darkens the floor under it: nothing of what belongs to the set."""
+    area = _vertex_area(skinned)
+    area[skinned.faces[fitting > LOOSE].reshape(-1)] = 0.0
+    return area
 
 
 def _flat(mesh: Mesh) -> NDArray[np.int32]:

@@ -107,7 +107,8 @@ class Renderer:
         cell = max(FLOOR_CELL, float((high - low).max()) / FLOOR_CELLS)
         self._columns, self._rows = (int(n) for n in np.ceil((high - low) / cell) + 2)
         corner = low - cell
-        self._arrays["floor"] = self.backend.upload(np.array([*corner, 1.0 / cell], np.float32))
+        floor = np.array([*corner, 1.0 / cell, *prepared.levels], np.float32)
+        self._arrays["floor"] = self.backend.upload(floor)
 
     def _load_shadow(self, prepared: Prepared) -> None:
         """The shadow map of the set."""

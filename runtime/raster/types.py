@@ -56,6 +56,7 @@ class RenderScene:
     wall_count: number of wild walls
     fitting: int32 [F] of skinned faces: :data:`LOOSE` for people and things; what moves in the set itself
         (a door's leaf) is drawn like the set: the wild wall it is in, or -1. None: all are loose
+    levels: heights of its floors, rising; on them people leave contact shadows
     """
 
     static: Mesh
@@ -68,6 +69,7 @@ class RenderScene:
     wall_count: int
     light: Light
     fitting: NDArray[np.int32] | None = None
+    levels: tuple[float, ...] = (0.0,)
 
 
 @dataclass(frozen=True, eq=False)

@@ -13,7 +13,7 @@ from raster_scenes import LIGHT, box, from_lists, looking, room, scene, sphere, 
 from twin import trace
 
 from runtime.raster.device import DeviceError
-from runtime.raster.prepare import closed_faces
+from runtime.raster.prepare import closed_faces, prepare
 from runtime.raster.renderer import Renderer
 from runtime.raster.types import RenderScene, Style, Views
 
@@ -304,3 +304,18 @@ def test_devices_that_cannot_be_used_are_named() -> None:
         Renderer("abacus")
     with pytest.raises(DeviceError, match="renders on cpu"):
         Renderer("cuda")
+
+
+def test_what_moves_in_the_set_is_drawn_like_it_and_goes_with_its_wall() -> None:
+    loose_scene = replace(room(), wall_count=1)
+    loose = prepare(loose_scene, PLAIN)
+    fitting = np.zeros(len(loose_scene.skinned.faces), np.int32)
+    fitted = prepare(replace(loose_scene, fitting=fitting), PLAIN)
+    assert loose.area.sum() > 0
+    assert fitted.area.sum() == 0  # no contact shadow
+    assert len(fitted.casters) == 0
+    moving = fitted.clusters[fitted.moving_first :]
+    assert (moving[:, 3] == 0).all()
+    assert fitted.moving_surface == len(fitted.surface_object)
+    with pytest.raises(ValueError, match="fitting"):
+        prepare(replace(loose_scene, fitting=fitting[1:]), PLAIN)

@@ -79,6 +79,7 @@ def assemble(world: World, bodies: Mapping[str, Body]) -> StagedScene:
             wall_count=len(world.walls),
             light=world.light,
             fitting=np.concatenate(fitting) if fitting else None,
+            levels=tuple(level.height for level in world.storeys),
         ),
         first_joint=first_joint,
         prop_entry=prop_entry,

@@ -218,13 +218,24 @@ def spline(t):
     )
 
 
+@ti.func
+def above_floor(z, floor: ti.template()):
+    """Height over the highest floor that is not above it."""
+    under = floor[3]
+    for k in range(4, floor.shape[0]):
+        if floor[k] <= z + 0.05:
+            under = floor[k]
+    return z - under
+
+
 @ti.kernel
 def touch(
     position: f3, area: f1, moments: ti.i32, floor: f1, columns: ti.i32, rows: ti.i32, spare: f1, ground: f1
 ):
     """How closely moving things stand over each cell of the floor, blurred: ground [M, rows, columns].
 
-    area: surface each skinned vertex stands for, square metres; floor: corner x, y, cells a metre
+    area: surface each skinned vertex stands for, square metres; floor: corner x, y, cells a metre, then the
+        heights of the floors, rising
     """
     ti.loop_config(block_dim=1)
     for m in range(moments):
@@ -234,7 +245,7 @@ def touch(
             ground[base + i] = 0.0
         left, right, low, high = columns, -1, rows, -1
         for v in range(area.shape[0]):
-            z = position[m, v, 2]
+            z = above_floor(position[m, v, 2], floor)
             x = ti.cast(ti.floor((position[m, v, 0] - floor[0]) * floor[2]), ti.i32)
             y = ti.cast(ti.floor((position[m, v, 1] - floor[1]) * floor[2]), ti.i32)
             if z < 0.4 and 0 <= x < columns and 0 <= y < rows:

@@ -31,7 +31,7 @@ from .geometry import (
     u64s,
     vec3,
 )
-from .light import BLOCK, across, lit, unblocked
+from .light import BLOCK, above_floor, across, lit, unblocked
 from .pattern import broad_pattern, glazed, grained, pattern
 
 NOTHING = 0xFFFF0000
@@ -714,7 +714,7 @@ def shading_kernels(style: Style) -> SimpleNamespace:
     ):
         """Share of the ambient light that reaches a point of the set."""
         out = 1.0 - area_near(where + nn * 0.24, corner, inverse, nx, ny, nz, values)
-        if nn.z > 0.7 and where.z < 0.2:
+        if nn.z > 0.7 and above_floor(where.z, floor) < 0.2:
             out *= 1.0 - 0.5 * (1.0 - ti.exp(-1.6 * standing_near(where, m, floor, columns, rows, ground)))
         return out
 

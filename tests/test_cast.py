@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 
+from runtime.body.build import make_body
+from runtime.body.pieces import PARTS
 from runtime.body.spec import BodySpec
 from vdsl.lang import ast
 from vdsl.lang.definitions.cast import CastDef, read_cast
@@ -125,3 +128,70 @@ def test_the_library_has_people_of_different_kinds() -> None:
     assert specs["girl"].youth > 0.9
     assert specs["old_man"].eld > 0.9
     assert max(s.height for s in specs.values()) - min(s.height for s in specs.values()) > 0.4
+
+
+def test_the_library_has_people_of_many_kinds_who_can_wear_anything() -> None:
+    catalog = Catalog()
+    names = set(catalog.names("cast"))
+    assert len(names) >= 40
+    assert {
+        *(
+            "police_officer",
+            "doctor",
+            "nurse",
+            "chef",
+            "waiter",
+            "soldier",
+            "knight",
+            "astronaut",
+            "firefighter",
+        ),
+        *(
+            "builder",
+            "judge",
+            "priest",
+            "nun",
+            "king",
+            "queen",
+            "princess",
+            "pirate",
+            "wizard",
+            "farmer",
+            "toddler",
+        ),
+    } <= names
+    casts = [c for c in (catalog.get("cast", n) for n in sorted(names)) if isinstance(c, CastDef)]
+    specs = [body_spec(c) for c in casts]
+    assert {s.femininity >= 0.5 for s in specs} == {True, False}
+    assert len({s.skin for s in specs}) >= 8
+    assert len({s.hat for s in specs}) >= 12
+    assert len({s.top for s in specs}) >= 18
+    for cast in casts:
+        dressed = body_spec(cast, {"hat": "cap", "neck": "scarf", "accent": "gold"})
+        assert (dressed.hat, dressed.neck, dressed.accent_color) == (
+            "cap",
+            "scarf",
+            colour_of("gold", "accent"),
+        )
+
+
+def test_a_feature_may_have_the_name_of_a_word() -> None:
+    """`shirt` is a kind of top and the colour under a jacket: the word is not taken for the parameter."""
+    cast, report = read("cast x(height 1.7m) {\n    top-kind shirt\n    shirt cream\n    belt yes\n}\n")
+    assert not report.errors
+    assert cast is not None
+    assert body_spec(cast).top == "shirt"
+    assert body_spec(cast).belt
+
+
+@pytest.mark.parametrize("name", Catalog().names("cast"))
+def test_everybody_in_the_library_builds(name: str) -> None:
+    cast = Catalog().get("cast", name)
+    assert isinstance(cast, CastDef)
+    body = make_body(body_spec(cast))
+    assert 5_000 <= len(body.mesh.faces) <= 12_000
+    assert np.allclose(body.weights.sum(1), 1.0, atol=1e-5)
+    low, high = body.mesh.vertices.min(0), body.mesh.vertices.max(0)
+    assert -0.02 < low[2] < 0.02
+    assert body.spec.height - 0.03 < high[2] < 1.22 * body.spec.height
+    assert body.mesh.parts.max() < len(PARTS)

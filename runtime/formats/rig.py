@@ -27,7 +27,7 @@ _SIDED = {
     "foot": ("foot", "ankle"),
     "toe": ("toebase", "toe", "toes", "ball"),
     "clavicle": ("clavicle", "collar", "shoulder", "collarbone"),
-    "upperarm": ("upperarm", "uparm", "armupper", "arm", "humerus"),
+    "upperarm": ("upperarm", "uparm", "armupper", "arm", "humerus", "shoulder"),
     "forearm": ("forearm", "lowerarm", "lowarm", "armlower", "elbow", "radius"),
     "hand": ("hand", "wrist"),
 }
@@ -147,11 +147,29 @@ def _by_name(rig: Rig) -> dict[str, int] | None:
         toe = found.get(f"toe_{side}")
         if toe is not None and found.get(f"foot_{side}") not in rig.chain(toe):
             del found[f"toe_{side}"]
-    if "hips" not in found and all(f"thigh_{s}" in found for s in "lr"):
-        found["hips"] = _common(rig, [found["thigh_l"], found["thigh_r"]])
+    hips = _hips(rig, found)
+    if hips is not None:
+        found["hips"] = hips
     if not all(joint in found and found[joint] >= 0 for joint in NEEDED) or not _in_order(rig, found):
         return None
     return _with_spine(rig, found)
+
+
+def _hips(rig: Rig, found: dict[str, int]) -> int | None:
+    """The bone that legs and arms hang on, near the legs: the one of that name only where it is there."""
+    limbs = [found.get(f"{joint}_{side}") for joint in ("thigh", "upperarm") for side in "lr"]
+    known = [bone for bone in limbs if bone is not None]
+    feet = [found.get(f"foot_{side}") for side in "lr"]
+    if len(known) < 4 or None in feet:
+        return found.get("hips")
+    middle = (rig.position[known[0]] + rig.position[known[1]]) / 2
+    leg = float(np.linalg.norm(rig.position[known[0]] - rig.position[feet[0]]))
+    named = found.get("hips", -1)
+    for bone in (named, _common(rig, known), _common(rig, known[:2])):
+        above = bone >= 0 and all(bone in rig.chain(limb)[:-1] for limb in known[:2])
+        if above and np.linalg.norm(rig.position[bone] - middle) < 0.4 * leg:
+            return bone
+    return None
 
 
 def _in_order(rig: Rig, found: dict[str, int]) -> bool:

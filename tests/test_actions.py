@@ -97,6 +97,47 @@ def test_an_action_reads_into_keys_and_moves() -> None:
     assert reach.offset == pytest.approx((0.0, 0.02, 0.0))
 
 
+def test_an_action_says_how_one_goes_what_it_needs_and_how_it_ends() -> None:
+    action, report = read(
+        """action stumble {
+            group going
+            feeling afraid
+            posture kneeling, in 1.2s, back
+            apart 45cm
+            travel crawl
+            gait lift 8cm, lean 10deg, facing back
+            example "anna stumble to jug", with jug glass
+            duration 2s
+            reach right partner shoulder, from 10%, at 30%, until 60%, back 100%, shake 3cm, times 4
+            step left, ahead 30cm, turn 10deg, from 10%, to 30%
+            jump 20cm, ahead 50cm, on right, from 40%, to 60%
+            drive target 80%, from 30%, to 60%
+            variant limping { mirror; gait limp 40% }
+        }"""
+    )
+    assert codes(report) == []
+    assert action is not None
+    assert (action.group, action.feeling, action.posture, action.rises) == (
+        "going",
+        "afraid",
+        "kneeling",
+        True,
+    )
+    assert (action.apart, action.posture_time, action.travel) == (0.45, 1.2, "crawl")
+    assert action.example == "anna stumble to jug"
+    assert action.props == ("jug", "glass")
+    clip = build_clip(action)
+    plain, limping = clip.variants
+    assert (plain.gait.lift, plain.gait.facing, plain.gait.limp) == (0.08, "back", 0.0)
+    assert (limping.gait.lift, limping.gait.limp) == (0.08, 0.4)
+    assert plain.timeline.reaches[0].to == "partner.shoulder"
+    assert plain.timeline.reaches[0].shake == pytest.approx(0.03)
+    (step,), (mirrored,) = plain.timeline.steps, limping.timeline.steps
+    assert (step.foot, mirrored.foot, mirrored.turn) == ("left", "right", -step.turn)
+    assert plain.timeline.jumps[0].feet == "right"
+    assert plain.timeline.drives[0].openness == pytest.approx(0.8)
+
+
 @pytest.mark.parametrize(
     ("body", "code"),
     [
@@ -112,6 +153,12 @@ def test_an_action_reads_into_keys_and_moves() -> None:
         ("duration 2s\n gaze target, form 50%", "VDS030"),
         ("duration 2s\n variant big { amplitude 120%; size 3 }", "VDS033"),
         ("duration 2s\n target maybe", "VDS026"),
+        ("duration 2s\n posture upside-down", "VDS026"),
+        ("duration 2s\n gait wobble 3cm", "VDS026"),
+        ("duration 2s\n group music-hall", "VDS026"),
+        ("duration 2s\n feeling bored", "VDS026"),
+        ("duration 2s\n step both, ahead 30cm", "VDS026"),
+        ("duration 2s\n reach right partner nose", "VDS026"),
     ],
 )
 def test_mistakes_are_reported_with_a_code_that_is_explained(body: str, code: str) -> None:

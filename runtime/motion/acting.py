@@ -341,7 +341,7 @@ class Performer:
         crouch = smooth(crouch.max(axis=0), 0.1 * self.fps) * (1 - self.sitting) * (1 - self.low.share)
         for _ in range(4):
             gap = self._shortage(tracks)
-            if gap.max() < 1e-3:
+            if gap.max() < 4e-3:
                 return
             shoulders = self.figure.shoulders()
             d = tracks.position(self.figure) - shoulders

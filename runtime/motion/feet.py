@@ -98,9 +98,8 @@ def foot_track(t: Array, first: Footing, steps: list[Step]) -> tuple[Array, ...]
     height = 0.022 + 0.03 * np.clip(moved, 0, 1.4) + run * 0.19 * np.clip(moved / 1.8, 0, 1) + high
     height = np.maximum(height, 0.012) * loose * (leap <= 0)
     climb = np.diff(ground)
-    up = (height + np.where(climb > 0, 0.5, 0.1) * np.abs(climb))[now] * np.where(
-        run[now] > 0, _bump(u, 0.40), _bump(u, 0.42)
-    )
+    height = height + np.where(climb > 0, 0.5, 0.1) * np.abs(climb)
+    up = height[now] * np.where(run[now] > 0, _bump(u, 0.40), _bump(u, 0.42))
     up = up + leap[now] * 4.0 * u * (1.0 - u) + tuck[now] * _bump(u, 0.5)
     up = np.where(flying, up, 0.0)
     air = np.where(flying, _bump(u, 0.5) * loose[now], 0.0)

@@ -17,8 +17,8 @@ Array = NDArray[np.float64]
 #: How a palm lies on each place: fingers inward, fingers up, thumb over.
 LIE: dict[str, tuple[float, float, float]] = {
     "shoulder": (0.1, 0.35, 1.15), "hand": (0.3, 0.0, 0.0), "back": (1.3, 0.25, 0.0),
-    "waist": (0.95, 0.1, 0.0), "head": (0.3, 0.9, 0.4), "cheek": (0.35, 0.8, 0.0), "chest": (0.2, 1.15, 0.0), "elbow": (0.4, 0.2, 0.0),
-    "belly": (0.3, 0.2, 0.0),
+    "waist": (0.95, 0.1, 0.0), "head": (0.3, 0.9, 0.4), "cheek": (0.35, 0.8, 0.0),
+    "chest": (0.2, 1.15, 0.0), "elbow": (0.4, 0.2, 0.0), "belly": (0.3, 0.2, 0.0),
 }  # fmt: skip
 
 

@@ -470,7 +470,7 @@ def _grasp(
 ) -> None:
     hand = hands.get(grasp.hand, grasp.hand)
     if grasp.kind == "take":
-        thing = target.object if target is not None else None
+        thing = target.object if target is not None and _in_reach(plan, target) else None
         if thing is not None and thing not in plan.held.values() and hand not in plan.held:
             plan.held[hand] = thing
             plan.events.append(Event(time, "take", plan.name, hand, thing))
@@ -512,6 +512,12 @@ def _throw(
     floor = (float(at[0]), float(at[1]), plan.route.floor)
     place = None if receiver else aim.position if aim is not None else floor
     return Event(time, "throw" if hand else "send", plan.name, hand, thing, place, receiver, flight)
+
+
+def _in_reach(plan: Plan, target: TargetPoint) -> bool:
+    """Whether a hand can get to a thing from where one stands: what is farther off is not taken."""
+    away = np.hypot(*(np.array(target.position[:2]) - plan.route.at[:2]))
+    return bool(away < 0.72 * plan.actor.skeleton.height)
 
 
 def put_place(thing: int, target: TargetPoint | None, second: TargetPoint | None) -> Point | None:

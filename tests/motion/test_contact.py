@@ -54,6 +54,12 @@ def test_hands_reach_grips_and_things_go_with_them(height: float, x: float, y: f
     assert grip(motion, prop)[-1, 2] > min(z + 0.05, 0.5 * height)
 
 
+def test_what_is_out_of_reach_is_not_taken() -> None:
+    motion = pick(1.7, 2.2, 0.0, 0.74)
+    assert motion.end_actors["a"].held == ()
+    assert np.ptp(motion.props[CUP][:, :3, 3], axis=0).max() < 1e-6
+
+
 def test_a_thing_stays_upright_while_it_is_carried() -> None:
     motion = pick(1.7, 0.45, -0.1, 0.74)
     up = motion.props[CUP][:, :3, 2]

@@ -42,7 +42,8 @@ def clip(text: str) -> ActionClip:
     definition = parse_definition(Source("test.vds", text), "action", text.split()[1], report)
     assert definition is not None
     action = read_action(definition, report)
-    assert action is not None and not report.diagnostics, report.diagnostics
+    assert action is not None
+    assert not report.diagnostics
     return build_clip(action)
 
 

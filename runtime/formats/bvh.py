@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+import warnings
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -13,6 +15,9 @@ from .errors import ModelFileError
 from .paths import read_bytes
 
 Array = NDArray[np.float64]
+#: Frames a second that are kept of faster motion, about.
+MOST_RATE = 60.0
+_HEAD = re.compile(r"\s*Frames:\s*(\d{1,15})\s+Frame\s+Time:\s*(\d*\.?\d+(?:[eE][-+]?\d+)?)\s", re.ASCII)
 _AXES = {"Xrotation": 0, "Yrotation": 1, "Zrotation": 2}
 _SHIFTS = {"Xposition": 0, "Yposition": 1, "Zposition": 2}
 
@@ -91,12 +96,14 @@ class _Skeleton:
 def read_bvh(path: Path) -> Bvh:
     """The motion of a file."""
     try:
-        text = read_bytes(path).decode("utf-8-sig")
+        text = read_bytes(path, limits.MOTION_BYTES).decode("utf-8-sig")
     except UnicodeDecodeError:
         raise ModelFileError(path, "it is no .bvh file: it is not text") from None
     head, motion, rows = text.partition("MOTION")
     if not motion:
         raise ModelFileError(path, "it has no MOTION: it is cut off, or no .bvh file")
+    if len(head) > limits.MIB:
+        raise ModelFileError(path, "its skeleton is longer than any")
     words = _Words(path, head)
     words.expect("HIERARCHY")
     words.expect("ROOT")
@@ -104,7 +111,7 @@ def read_bvh(path: Path) -> Bvh:
     _joint(words, skeleton, -1, 0, words.next())
     if not skeleton.channels:
         raise ModelFileError(path, "nothing in it moves")
-    values, seconds = _rows(path, rows, len(skeleton.channels))
+    values, seconds = _rows(path, rows, len(skeleton.channels), len(skeleton.names))
     return _built(skeleton, values, seconds)
 
 
@@ -140,32 +147,34 @@ def _joint(words: _Words, skeleton: _Skeleton, parent: int, depth: int, name: st
             raise ModelFileError(words.path, f"`{word[:30]}` has no place in its skeleton")
 
 
-def _rows(path: Path, text: str, channels: int) -> tuple[Array, float]:
-    """The numbers [T, C] and the seconds of a frame."""
-    words = text.replace(":", " : ").split()
-    try:
-        frames_at, time_at = words.index("Frames"), words.index("Time")
-        frames, seconds = int(words[frames_at + 2]), float(words[time_at + 2])
-    except (ValueError, IndexError):
-        raise ModelFileError(
-            path, "its motion does not say how many frames it has, and how long one is"
-        ) from None
+def _rows(path: Path, text: str, channels: int, joints: int) -> tuple[Array, float]:
+    """The numbers [T, C], no more of them than a film needs, and the seconds of a frame."""
+    head = _HEAD.match(text)
+    if head is None:
+        raise ModelFileError(path, "its motion does not say how many frames it has, and how long one is")
+    frames, seconds = int(head.group(1)), float(head.group(2))
     if not 1 <= frames <= limits.FRAMES:
         raise ModelFileError(path, f"it declares {frames:,} frames; from 1 to {limits.FRAMES:,} are read")
     if not 1e-4 < seconds < 10.0 or frames * seconds > limits.SECONDS:
         raise ModelFileError(
             path, f"its motion is longer than {limits.SECONDS:g} s, or its frame time is no time"
         )
-    numbers = words[time_at + 3 :]
-    if len(numbers) < frames * channels:
+    every = max(1, round(1.0 / (MOST_RATE * seconds)))
+    if frames * channels > limits.MOTION_NUMBERS or frames // every * joints > limits.MOTION_NUMBERS // 4:
+        raise ModelFileError(path, f"it has {frames:,} frames of {channels} numbers: that is too many")
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")  # numpy warns of what is no number, and goes on
+        try:
+            values = np.fromstring(text[head.end() :], np.float64, sep=" ")[: frames * channels]
+        except (ValueError, DeprecationWarning):
+            raise ModelFileError(
+                path, f"something in it is no number, or it is cut off: {frames:,} frames are declared"
+            ) from None
+    if len(values) < frames * channels:
         raise ModelFileError(path, f"it is cut off: {frames:,} frames of {channels} numbers are declared")
-    try:
-        values = np.array(numbers[: frames * channels], np.float64).reshape(frames, channels)
-    except ValueError:
-        raise ModelFileError(path, "something in its motion is no number") from None
     if not np.isfinite(values).all() or np.abs(values).max() > 1e7:
         raise ModelFileError(path, "some of its numbers are none (NaN, infinite or beyond measure)")
-    return values, seconds
+    return values.reshape(frames, channels)[::every], seconds * every
 
 
 def _built(skeleton: _Skeleton, values: Array, seconds: float) -> Bvh:

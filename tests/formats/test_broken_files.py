@@ -321,7 +321,7 @@ def test_a_picture_that_is_none(tmp_path):
         (("Frames: 26", "Frames: 0"), "declares"),
         (("Frames: 26", "Frames: many"), "how many frames"),
         (("Frame Time: 0.04", "Frame Time: 0"), "no time"),
-        (("Frame Time: 0.04", "Frame Time: nan"), "no time"),
+        (("Frame Time: 0.04", "Frame Time: nan"), "how long one is"),
         (("OFFSET 10.0000", "OFFSET nan"), "none"),
         (("OFFSET 10.0000", "OFFSET far"), "number"),
         (("CHANNELS 3", "CHANNELS 44"), "channels"),
@@ -343,7 +343,7 @@ def test_broken_bvh(tmp_path, change, words):
 
 def test_a_bvh_nested_without_end(tmp_path):
     path = tmp_path / "a.bvh"
-    depth = 20_000
+    depth = 5_000
     joints = "".join(
         f"JOINT j{i} {{ OFFSET 0 1 0 CHANNELS 3 Zrotation Xrotation Yrotation " for i in range(depth)
     )

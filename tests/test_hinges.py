@@ -72,6 +72,7 @@ class Played:
         first = opening_state(storyboard.scenes[0], staged.world, skeletons, self.report)
         self.states: list[SceneState] = [first]
         self.motions: list[list[SceneMotion]] = []
+        self.lines = storyboard.lines
         for line in storyboard.lines:
             state = self.states[-1]
             self.motions.append([m for _, m in motions(state, line, self.filming, Report())])

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from test_hinges import Played
 
+from runtime.body.skeleton import JOINT
 from runtime.grid import grid_of
 from runtime.nav import BODY_RADIUS, find_paths, level_at, nearest_free, obstacles, reachable
 from runtime.world import World
@@ -14,6 +16,7 @@ from vdsl.lang.diagnostics import Report
 from vdsl.lang.parse import parse_definition
 from vdsl.lang.source import Source
 from vdsl.library.loader import Catalog
+from vdsl.propose.story import propose
 from vdsl.stage.floors import without
 from vdsl.stage.world import build_world
 
@@ -174,3 +177,39 @@ def test_cameras_are_in_the_room_of_their_subject() -> None:
     assert stage_of(home, np.array([UP])).ceiling == pytest.approx(5.25)
     assert stage_of(home, np.array([HERE, UP])).ceiling == pytest.approx(5.25)
     assert len(stage_of(home, np.array([UP])).rooms) == 1
+
+
+# --- in a story -------------------------------------------------------------------------
+
+FLAT = "\n" + HOUSE.replace("set home", "set flat")
+
+
+def test_somebody_goes_upstairs_and_cameras_stay_up_there_with_her() -> None:
+    played = Played("(anna walk table) / (static full eye-level) proposals 12\n", "anna at hall.middle", FLAT)
+    assert not played.codes
+    for motion in played.motions[0]:
+        assert motion.position["anna"][-1, 2] == pytest.approx(2.85)
+        soles = [JOINT["toe_l"], JOINT["toe_r"]]
+        low = motion.world_from_joint["anna"][:, soles][..., 2, 3].min(axis=1)
+        assert (low > motion.position["anna"][:, 2] - 0.3).all()
+    again = Played("(anna wave) / (static full low-angle) proposals 12\n", "anna at landing.middle", FLAT)
+    line = again.lines[0]
+    grid = propose(line, line.shots[0], again.states[0], again.filming)
+    assert len(grid.cameras) > 4
+    for camera in grid.cameras:
+        assert camera.track.position[:, 2].min() > 2.85 + 0.1
+
+
+def test_what_is_missing_is_said() -> None:
+    bare = FLAT.replace("stairs, at (0.62, 0.9)m, width 1m, to landing", "")
+    played = Played("(anna walk table)\n", "anna at hall.middle", bare)
+    (found,) = played.report.diagnostics
+    assert found.code == "VDS170"
+    assert "no stairs lead there" in found.label
+    walled = FLAT.replace("spot middle, at (3, 2)m", "spot middle, at (3, 2)m\n" + WALL)
+    played = Played("(anna walk table)\n", "anna at hall.middle", walled)
+    assert [d.code for d in played.report.diagnostics] == ["VDS170"]
+    assert "`wardrobe`" in played.report.diagnostics[0].label
+
+
+WALL = "        repeat i 4 { place wardrobe = wardrobe, at (1.7, 0.85 + i * 1.5)m, turn 90deg }"

@@ -10,7 +10,6 @@ import typer
 
 from ..lang.diagnostics import listing, nearest
 from .check import USAGE, check_or_exit, stop
-from .failures import failures_told
 from .show import print_report
 
 if TYPE_CHECKING:
@@ -31,6 +30,8 @@ def preview(
     device: Annotated[str, typer.Option(help="Where pictures are drawn: auto, cpu, cuda, vulkan.")] = "auto",
 ) -> None:
     """Draw a scene as it is placed, with names on people, things and spots."""
+    from .failures import failures_told
+
     checked = check_or_exit(file, "text")
     name = _scene(checked, scene)
     path = out or Path(f"{file.stem}-{name}.png")

@@ -40,7 +40,7 @@ from .weights import (
 )
 
 #: Raised with every change of shape, so that old cache files are not read.
-VERSION = 12
+VERSION = 14
 
 
 @dataclass(frozen=True, eq=False)

@@ -51,7 +51,7 @@ def limb_pieces(f: Figure) -> list[Piece]:
     long_sleeves = f.spec.top not in ("tshirt", "tank", "scrubs", "dress", "gown")
     start = (f.p.upper_arm + f.p.forearm) * 0.90 if long_sleeves else 0.22 * f.p.upper_arm
     local: Field = lambda q: solid(q @ ARM_FRAME + origin)  # noqa: E731
-    patch = polygonise(local, (start, -0.065 * h, -0.06 * h), (reach, 0.065 * h, 0.06 * h), 0.0033 * h / 1.7)
+    patch = polygonise(local, (start, -0.065 * h, -0.06 * h), (reach, 0.065 * h, 0.06 * h), 0.0038 * h / 1.7)
     wrist = f.p.upper_arm + f.p.forearm
     focus = Focus((wrist + 0.55 * f.p.hand, 0.0, 0.0), 0.6 * f.p.hand, 2.2)
     patch = simplify(patch, round((500 if long_sleeves else 760) * f.detail), local, focus)
@@ -79,7 +79,7 @@ def _skin(head: Head) -> list[Piece]:
     patch = polygonise(solid, low, high, 0.0150 * u)
     centre = o + np.array([0.30, 0.10, 0.34]) * u
     focus = Focus((float(centre[0]), float(centre[1]), float(centre[2])), 0.24 * u, 3.6)
-    patch = half(simplify(patch, round(1500 * f.detail), solid, focus))
+    patch = half(simplify(patch, round(1680 * f.detail), solid, focus))
     cover = hair_cover(head)
     if cover is not None:
         patch = cull(patch, cover, 0.012 * u)
@@ -110,8 +110,15 @@ def _skin(head: Head) -> list[Piece]:
 def _mouth(head: Head) -> list[Piece]:
     """What is seen between parted lips: the upper teeth, darkness behind them."""
     m, half_ = head.mouth_z, head.mouth_half
-    back = _behind(head, np.linspace(0.0, 1.02 * half_, 7), np.linspace(m - 0.125, m + 0.055, 7), 0.040)
-    teeth = _behind(head, np.linspace(0.0, 0.70 * half_, 5), np.linspace(m + 0.0075, m + 0.052, 3), 0.020)
+    rows = np.linspace(m - 0.105, m + 0.050, 7)
+    taper = np.linspace(0.60, 1.0, 7)  # a small chin is narrow
+    back = _behind(head, np.linspace(0.0, 0.96 * half_, 7)[:, None] * taper, rows, 0.050)
+    teeth = _behind(
+        head,
+        np.linspace(0.0, 0.58 * half_, 5)[:, None] * np.ones(3),
+        np.linspace(m + 0.0075, m + 0.050, 3),
+        0.027,
+    )
     return [
         Piece(back, _MOUTH, "skin", None, rule="mouth"),
         Piece(teeth, _TEETH, "skin", None, rule="teeth"),
@@ -119,8 +126,9 @@ def _mouth(head: Head) -> list[Piece]:
 
 
 def _behind(head: Head, across: Values, up: Values, depth: float) -> Patch:
-    """A sheet over a grid of (y, z) at Y >= 0, ``depth`` behind the foremost skin, facing forward."""
-    y, z = (g.reshape(-1) for g in np.meshgrid(across, up, indexing="ij"))
+    """A sheet at Y >= 0 over widths ``across`` [C, R] at heights ``up`` [R], ``depth`` behind the foremost
+    skin, facing forward."""
+    y, z = across.reshape(-1), np.broadcast_to(up, across.shape).reshape(-1)
     points = on_front(face(head), y, z) - np.array([depth, 0.0, 0.0])
     grid = head.metres(points).reshape(len(across), len(up), 3)
     return sheet(grid, head.metres(np.zeros((1, 3)))[0])
@@ -225,9 +233,9 @@ def _shell(
     centre: NDArray[np.float64], radius: float, pitches: tuple[float, float], droop: float, turn: float
 ) -> tuple[Patch, Patch]:
     """Part of a ball between two pitches, turned about Y; and its border strip next to the pupil."""
-    side, up = np.linspace(-1.25, 1.25, 11), np.linspace(*pitches, 5)
+    side, up = np.linspace(-1.14, 1.14, 11), np.linspace(*pitches, 5)
     yaw, pitch = np.meshgrid(side, up, indexing="ij")
-    pitch = pitch + droop * (yaw / 1.25) ** 2 * (pitch < 0)
+    pitch = pitch + droop * (yaw / 1.14) ** 2 * (pitch < 0)
     points = np.stack([np.cos(yaw) * np.cos(pitch), np.sin(yaw), np.cos(yaw) * np.sin(pitch)], -1).reshape(
         -1, 3
     )

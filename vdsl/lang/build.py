@@ -158,9 +158,7 @@ class Builder:
     def definition_file(self, node: Tree[Token]) -> ast.FileDefinition:
         kind, name, path = (_token(child) for child in node.children[:3])
         options = tuple(self._entry_option(_tree(child)) for child in node.children[3:])
-        return ast.FileDefinition(
-            str(kind), self.name(name), self.text(path), options, (), self.span(node)
-        )
+        return ast.FileDefinition(str(kind), self.name(name), self.text(path), options, (), self.span(node))
 
     # -- the story -------------------------------------------------------------------
 

@@ -172,8 +172,11 @@ class Wield:
         ahead, out, above = (
             channels.pair("hand", axis) + channels.pair("hand", axis + "+") for axis in SIDED["hand"]
         )
-        poses = (channels.pair("wield", axis) + channels.pair("wield", axis + "+") for axis in SIDED["wield"])
-        return Wield(*poses, np.stack([ahead, MIRROR * out, above], axis=-1))
+        weight, pitch, inward, roll, grip = (
+            channels.pair("wield", axis) + channels.pair("wield", axis + "+") for axis in SIDED["wield"]
+        )
+        shift = np.stack([ahead, MIRROR * out, above], axis=-1)
+        return Wield(weight, pitch, inward, roll, grip, shift)
 
 
 class HandTracks:

@@ -49,7 +49,7 @@ def test_the_other_hand_lies_on_what_is_held() -> None:
 
 def test_the_point_of_what_is_held_leads() -> None:
     """The far end, as far beyond the middle as the grip is before it, is where the reach leads."""
-    led = replace(BEFORE_ONE, to="target", lead="point")
+    led = replace(BEFORE_ONE, to="target", lead="point", offset=(0.0, 0.0, 0.0))
     clip = ActionClip("touch", (Variant("plain", 3.0, Timeline(tracks=POINTING, reaches=(led,))),), "none")
     aim = at(0.45, -0.1, 1.15)
     motion = perform(

@@ -76,7 +76,8 @@ class Figure:
     def detail(self) -> float:
         """How finely large surfaces are made, about 0.6 .. 1: less where much is worn, to stay within the
         triangles a person may have."""
-        return min(1.0, BUDGET / (BUDGET + sum(_LOADS.get(getattr(self.spec, k), 0) for k in _WORN)))
+        load = sum(_LOADS.get(getattr(self.spec, k), 0) for k in _WORN)
+        return float((BUDGET / (BUDGET + load)) ** 1.3)
 
     def level(self, share: float) -> float:
         """Height of a level of the torso: 0 is the hip joint, 1 the shoulder joint."""

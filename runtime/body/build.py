@@ -40,7 +40,7 @@ from .weights import (
 )
 
 #: Raised with every change of shape, so that old cache files are not read.
-VERSION = 14
+VERSION = 15
 
 
 @dataclass(frozen=True, eq=False)

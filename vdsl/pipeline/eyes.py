@@ -172,9 +172,6 @@ def pose_eyes(
 ) -> list[Eye]:
     """An eye for each frame of a performance, all from the side from which most is seen; cell: pixels."""
     sides = _TWO_SIDES if len(trial.people) > 1 else _SIDES
-    headings = [facing(trial, way, int(f)) for f in frames]
-    choices = [
-        [_pose_eye(trial, way, int(f), a + off, cell) for f, a in zip(frames, headings, strict=True)]
-        for off in sides
-    ]
+    turns = [(int(f), _facing(trial, way, int(f))) for f in frames]
+    choices = [[_pose_eye(trial, way, frame, turn + off, cell) for frame, turn in turns] for off in sides]
     return max(choices, key=lambda eyes: _share_seen(trial, way, frames, eyes))

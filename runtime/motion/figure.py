@@ -232,16 +232,17 @@ class Figure:
         offset, axis = self.hands.offset, self._forearm_frames[:, :, 0]
         goal_wrist = goals.position - turned(goals.rotation, offset)
         arc = turned(heading[None], np.stack([[[0.75, m * 0.45, 0.0]] for m in (1.0, -1.0)]))
-        for turn in range(6 if goals.weight.any() else 1):
+        for turn in range(9 if goals.weight.any() else 1):
             way = goal_wrist - wrist_fk
             target = wrist_fk + w * way + (0.7 * w * (1 - w) * norm(way)[..., None]) * arc
             limb = two_bone(root, target, self._upper, self._lower, pole, fold=2.8)
             fore = bone_rotation(limb.end - limb.middle, limb.hinge, self._forearm_frames)
             relative = _wrists(fore, fk_relative, goals, axis)
             hand = fore @ relative
-            goal_wrist = goals.position - turned(hand, offset)
-            if turn >= 2 and (norm(limb.end - goal_wrist) * goals.weight).max() < 0.004:
+            wished = goals.position - turned(hand, offset)
+            if turn >= 2 and (norm(limb.end - wished) * goals.weight).max() < 0.004:
                 break
+            goal_wrist = goal_wrist + (1.0 if turn < 3 else 0.5) * (wished - goal_wrist)  # may go to and fro
         swivel = dot(rotation_vector_twist(relative, axis), axis)
         upper = bone_rotation(limb.middle - root, limb.hinge, self._upperarm_frames)
         self._set(_UPPERARMS, root, upper)

@@ -20,23 +20,23 @@ Field = Callable[[Points], Values]
 _SAMPLES = 96
 
 
-def _length(v: Points) -> Values:
-    return np.sqrt(np.einsum("ij,ij->i", v, v))
-
-
 def ellipsoid(centre: ArrayLike, radii: ArrayLike, axes: ArrayLike | None = None) -> Field:
     """An ellipsoid; ``axes`` [3, 3] has its unit axes as rows (the world's where None)."""
     c, r = np.asarray(centre, float), np.broadcast_to(np.asarray(radii, float), (3,))
     frame = None if axes is None else np.asarray(axes, float)
+    middle = c if frame is None else frame @ c
 
     def field(p: Points) -> Values:
-        d = p - c
-        if frame is not None:
-            d = d @ frame.T
-        q = d / r
-        length = _length(q) + 1e-9
-        slope = _length(q / r) + 1e-9
-        return length * (length - 1.0) / slope
+        inside, steep = np.full(len(p), 1e-18), np.full(len(p), 1e-18)
+        for k in range(3):
+            d = (p[:, k] if frame is None else p @ frame[k]) - middle[k]
+            q = d * (1.0 / r[k])
+            q *= q
+            inside += q
+            q *= 1.0 / r[k] ** 2
+            steep += q
+        length = np.sqrt(inside)
+        return np.asarray(length * (length - 1.0) / np.sqrt(steep))
 
     return field
 
@@ -51,20 +51,22 @@ def round_cone(a: ArrayLike, b: ArrayLike, ra: float, rb: float, flat: ArrayLike
     stretch = np.zeros(3) if flat is None else np.asarray(flat, float)
     factor = float(np.linalg.norm(stretch))
     unit = stretch / factor if factor else stretch
-
-    def widen(v: Points) -> Points:
-        return v if not factor else v + np.outer(v @ unit, unit) * (factor - 1.0)
-
-    axis = widen((pb - pa)[None])[0]
+    axis = pb - pa
+    if factor:
+        axis = axis + float(axis @ unit) * (factor - 1.0) * unit
     length2 = float(axis @ axis)
     slope = (rb - ra) / np.sqrt(length2)
-    tilt = 1.0 / np.sqrt(1.0 + slope * slope)
+    scale = 1.0 / (np.sqrt(1.0 + slope * slope) * max(factor, 1.0))
 
     def field(p: Points) -> Values:
-        d = widen(p - pa)
-        t = np.clip(d @ axis / length2, 0.0, 1.0)
-        off = d - t[:, None] * axis
-        return (_length(off) - (ra + (rb - ra) * t)) * tilt / max(factor, 1.0)
+        d = [p[:, k] - pa[k] for k in range(3)]
+        if factor:
+            wider = sum(d[k] * unit[k] for k in range(3)) * (factor - 1.0)
+            d = [d[k] + wider * unit[k] for k in range(3)]
+        t = sum(d[k] * (axis[k] / length2) for k in range(3))
+        t = np.clip(t, 0.0, 1.0)
+        away = sum((d[k] - t * axis[k]) ** 2 for k in range(3))
+        return np.asarray((np.sqrt(away) - (ra + (rb - ra) * t)) * scale)
 
     return field
 
@@ -94,7 +96,8 @@ def loft(
     frame: rows u (along the axis), v and w, orthonormal; power: 2 for ellipses, more for squarer ones;
     grow: thickness added all round. The ends are flat.
     """
-    o, axes = np.asarray(origin, float), np.asarray(frame, float)
+    axes = np.asarray(frame, float)
+    start = axes @ np.asarray(origin, float)
     at = np.array([k.at for k in knots])
     columns = np.array(
         [[k.front, k.back, k.side, k.side if k.outer is None else k.outer, k.v, k.w] for k in knots], float
@@ -103,28 +106,32 @@ def loft(
     grid = np.linspace(at[0], at[-1], _SAMPLES)
     table = PchipInterpolator(at, columns, axis=0)(grid)
     table[:, :4] = np.maximum(table[:, :4], 1e-4)
-    least = table[:, :4].min(1)
     scale = (_SAMPLES - 1) / (at[-1] - at[0])
     slope = np.abs(np.gradient(table[:, :4], grid, axis=0)).mean(1)
     tilt = 1.0 / np.sqrt(1.0 + np.minimum(slope, 2.0) ** 2)
+    rows = np.ascontiguousarray(np.column_stack([table, table[:, :4].min(1), tilt]).T)
+    steps = np.diff(rows[:6], axis=1, append=rows[:6, -1:])
 
     def field(p: Points) -> Values:
-        local = (p - o) @ axes.T
-        x = np.clip((local[:, 0] - at[0]) * scale, 0.0, _SAMPLES - 1.001)
+        u = p @ axes[0] - start[0]
+        x = np.clip((u - at[0]) * scale, 0.0, _SAMPLES - 1.001)
         i = x.astype(np.intp)
-        f = (x - i)[:, None]
-        row = table[i] * (1.0 - f) + table[i + 1] * f
-        dv, dw = local[:, 1] - row[:, 4], local[:, 2] - row[:, 5]
-        qv = np.abs(dv) / np.where(dv > 0, row[:, 0], row[:, 1])
-        qw = np.abs(dw) / np.where(dw > 0, row[:, 3], row[:, 2])
-        q = (np.hypot(qv, qw) if power == 2.0 else (qv**power + qw**power) ** (1.0 / power)) + 1e-6
-        away = np.hypot(dv, dw)
-        mean = np.where(q > 1e-3, away / q, least[i])
-        radial = (q - 1.0) * mean * tilt[i]
-        end = np.maximum(at[0] - local[:, 0], local[:, 0] - at[-1])
-        return np.minimum(np.maximum(radial, end), 0.0) + np.hypot(
-            np.maximum(radial, 0.0), np.maximum(end, 0.0)
-        )
+        x -= i
+
+        def row(k: int) -> Values:
+            return rows[k].take(i) + steps[k].take(i) * x
+
+        dv, dw = p @ axes[1] - start[1] - row(4), p @ axes[2] - start[2] - row(5)
+        qv = np.abs(dv) / np.where(dv > 0, row(0), row(1))
+        qw = np.abs(dw) / np.where(dw > 0, row(3), row(2))
+        q = np.sqrt(qv * qv + qw * qw) if power == 2.0 else (qv**power + qw**power) ** (1.0 / power)
+        q += 1e-6
+        mean = np.where(q > 1e-3, np.sqrt(dv * dv + dw * dw) / q, rows[6].take(i))
+        radial = (q - 1.0) * mean * rows[7].take(i)
+        end = np.maximum(at[0] - u, u - at[-1])
+        out = np.minimum(np.maximum(radial, end), 0.0)
+        radial, end = np.maximum(radial, 0.0), np.maximum(end, 0.0)
+        return np.asarray(out + np.sqrt(radial * radial + end * end))
 
     return field
 
@@ -133,8 +140,8 @@ def smooth_min(a: Values, b: Values, k: float) -> Values:
     """The polynomial smooth minimum: joins two solids with a fillet of about ``k`` metres."""
     if k <= 0.0:
         return np.minimum(a, b)
-    h = np.maximum(k - np.abs(a - b), 0.0) / k
-    return np.minimum(a, b) - h * h * h * k / 6.0
+    h = np.maximum(k - np.abs(a - b), 0.0)
+    return np.asarray(np.minimum(a, b) - h * h * h * (1.0 / (6.0 * k * k)))
 
 
 def union(parts: Sequence[tuple[Field, float]]) -> Field:
@@ -172,9 +179,6 @@ def mirrored(solid: Field) -> Field:
 
 def gradient(field: Field, points: Points, step: float = 1.5e-3) -> Points:
     """Central differences of a field, [N, 3], not normalised."""
-    out = np.empty_like(points)
-    for axis in range(3):
-        d = np.zeros(3)
-        d[axis] = step
-        out[:, axis] = field(points + d) - field(points - d)
-    return out / (2.0 * step)
+    ways = step * np.concatenate([np.eye(3), -np.eye(3)])
+    ahead, behind = field((points + ways[:, None]).reshape(-1, 3)).reshape(2, 3, -1)
+    return np.ascontiguousarray((ahead - behind).T) / (2.0 * step)

@@ -88,6 +88,8 @@ def climbing(line: Array, stairs: tuple[Stairs, ...], step: float) -> Array:
     """How many times slower one gets on at each point of a line [N, 3]: a tread takes the time of a step."""
     slow = np.ones(len(line))
     for flight in stairs:
+        if flight.steps < 2:  # a single step has no tread
+            continue
         u, beside, within = _on(flight, line)
         inside = (u > -0.5 * flight.run) & (u < flight.run * (flight.steps - 0.5)) & beside & within
         slow = np.where(inside, max(step / flight.run, 1.0), slow)
@@ -97,6 +99,8 @@ def climbing(line: Array, stairs: tuple[Stairs, ...], step: float) -> Array:
 def tread(place: Array, stairs: tuple[Stairs, ...], heading: float) -> Array | None:
     """Where a foot near ``place`` [3] is set on the tread there, [3]; None off all stairs."""
     for flight in stairs:
+        if flight.steps < 2:
+            continue
         (u,), (beside,), (within,) = _on(flight, place[None])
         k = int(np.floor(u / flight.run))
         if not (beside and within and 0 <= k < flight.steps - 1):

@@ -363,6 +363,7 @@ class ActionClip:
     apart: metres between the two people of the action, 0 for talking distance; hold: the last pose stays
     needs_hand: ``left`` or ``right`` where what it needs has to be in that hand, "" for either
     capture: motion that the body goes through in the clip's own part
+    goes: whether one gets to the target first even where the clip's own part needs nothing from it
     """
 
     name: str
@@ -381,6 +382,7 @@ class ActionClip:
     needs_hand: str = ""
     hold: bool = False
     capture: Capture | None = None
+    goes: bool = False
 
     def variant(self, name: str) -> Variant:
         """The variant of that name, or the first."""

@@ -297,7 +297,7 @@ def _where_to(
     if clip.posture == "lying" and target is not None and target.bed is not None:
         there = actor.seat is not None and math.dist(actor.seat, target.bed[0]) < 0.3
         return None if there and actor.posture == "lying" else beat.target
-    goes = not any(v.duration > 0 and _plays(v.timeline) for v in clip.variants) or clip.lead
+    goes = not any(v.duration > 0 and _plays(v.timeline) for v in clip.variants) or clip.lead or clip.goes
     if goes and beat.target is not None:
         return beat.target
     pairs = ((beat.second, second, "second"), (beat.target, target, "target"))

@@ -58,6 +58,7 @@ def build_clip(action: ActionDef) -> ActionClip:
         action.apart,
         action.needs_hand,
         any(v.part.hold for v in action.variants),
+        goes=action.goes,
     )
     return with_capture(clip, action) if isinstance(action, FileActionDef) else clip
 

@@ -93,6 +93,7 @@ class ActionDef(DefinitionBase):
     needs_hand: left or right, "" for either; group: one of :data:`GROUPS`, "" where it is not said
     example: a line that shows it, as in the language, anna acting and ben the other; props: names of the
         props it needs
+    goes: whether the way of travelling is written, so that one goes to the target whatever is done there
     """
 
     target: str
@@ -116,6 +117,7 @@ class ActionDef(DefinitionBase):
     example: str = ""
     props: tuple[str, ...] = ()
     needs_hand: str = ""
+    goes: bool = False
 
 
 def read_action(definition: ast.Definition, report: Report) -> ActionDef | None:
@@ -182,6 +184,7 @@ def _settings(
         example=example.value_text(0) if example is not None else "",
         props=example.words("with") if example is not None else (),
         needs_hand=settings["needs"].word("in", "", ("left", "right")) if "needs" in settings else "",
+        goes="travel" in settings and travel != "none",
     )  # fmt: skip
 
 

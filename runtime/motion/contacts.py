@@ -29,6 +29,8 @@ _LIE: dict[str, tuple[float, float, float]] = {
     "shoulder": (1.35, 0.55, 0.5), "back": (1.35, -0.35, 0.0), "knee": (0.3, -0.5, 1.2),
     "thigh": (0.3, -0.7, 0.9),
 }  # fmt: skip
+#: What is added to that while the hand is empty: flat over the mouth, which a cup would be tipped into.
+_EMPTY: dict[str, tuple[float, float, float]] = {"mouth": (0.4, -0.35, 0.0)}
 _PALM = {"side": 0.0, "down": 1.45, "up": -1.3}
 #: A palm held flat against what is before one, fingers up.
 _FLAT = (-1.3, 1.2, 0.0)
@@ -214,8 +216,9 @@ class HandTracks:
             self.pull[k] = w * draws + self.pull[k] * (1 - w)
             total = w + self.turning[k] * (1 - w)
             share = w / np.maximum(total, 1e-6)
-            for track, angle in zip((self.inward, self.pitch, roll), layer.angles, strict=True):
-                track[k] += share * (angle - track[k])
+            empty = _EMPTY.get(layer.place_of, (0.0, 0.0, 0.0))
+            for track, angle, more in zip((self.inward, self.pitch, roll), layer.angles, empty, strict=True):
+                track[k] += share * (angle + more * (1 - carry[k]) - track[k])
             self.turning[k] = total
         along, loose = np.zeros(shape), np.zeros(shape)
         for layer in layers:

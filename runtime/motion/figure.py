@@ -255,7 +255,11 @@ class Figure:
         """Fingers [2, T]: curl 0 straight .. 1 fist; point: the index stays straight; thumb curls 0..1,
         and stands off below 0."""
         first, second = -MIRROR * 1.35 * curl, -MIRROR * 1.7 * curl
-        thumbs = rot_x(-MIRROR * 0.55 * thumb) @ rot_z(-MIRROR * 0.35 * thumb)
+        fold = np.clip((thumb - 0.77) / 0.18, 0.0, 1.0)  # a fist: the thumb lies over the fingers
+        over = rotation(cross(np.array([1.0, 0.0, 0.0]), self.hands.fingers) * (1.25 * fold)[..., None])
+        thumbs = (
+            rot_x(-MIRROR * (0.55 * thumb + 0.35 * fold)) @ rot_z(-MIRROR * 0.35 * thumb * (1 - fold)) @ over
+        )
         self._turn_all(_KNUCKLES, _in_order(rot_x(first), thumbs))
         self._turn_all(_MIDDLES, _in_order(rot_x(second), rot_x(-first * point)))
         self._turn_all(_INDEXTIPS, _in_order(rot_x(second * (1 - point))))

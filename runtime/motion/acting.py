@@ -374,7 +374,9 @@ class Performer:
         tracks = contacts.tracks
         pose = self.arm_pose(tracks.carry)
         rotation = tracks.rotation(self.figure.hands)
-        goals = HandGoals(tracks.position(self.figure), tracks.weight, rotation, tracks.turning)
+        goals = HandGoals(
+            tracks.position(self.figure), tracks.weight, rotation, tracks.turning, tracks.around
+        )
         palms = self.figure.arms(pose, goals, self.yaw)
         self.tracks, self.goals, self.palms = tracks, goals.position, palms
         self.goal_rotation = rotation

@@ -185,7 +185,8 @@ class HandTracks:
     """All layers of one person, composed. Arrays are [2, T], left first.
 
     weight: how far the palm is drawn to its place, pull: to one the body leans for, close [T]: to one on
-    somebody else's body; turning: how far its orientation is; inward, pitch, tilt: that orientation
+    somebody else's body; around: the arm goes around them
+    turning: how far its orientation is; inward, pitch, tilt: that orientation
     carry: a thing is in the hand; grip: fingers closed
     """
 
@@ -233,6 +234,10 @@ class HandTracks:
         self.reaching = bool(self.pull.any())
         others = [x.weight for x in layers if x.other is not None]
         self.close = np.max(others, axis=0) if others else np.zeros(len(t))
+        self.around = np.zeros(shape)
+        for layer in layers:
+            if layer.place_of in ("partner.back", "partner.waist"):
+                self.around[layer.hand] = np.maximum(self.around[layer.hand], layer.weight)
 
     def position(self, figure: Figure) -> Array:
         """Palms' places [2, T, 3] for the torso as it is posed now."""

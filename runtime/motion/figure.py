@@ -73,12 +73,16 @@ class ArmPose:
 
 @dataclass(frozen=True, eq=False)
 class HandGoals:
-    """Where palms are to be: position [2, T, 3] and weight [2, T]; rotation [2, T, 3, 3] and its weight."""
+    """Where palms are to be: position [2, T, 3] and weight [2, T]; rotation [2, T, 3, 3] and its weight.
+
+    around: [2, T], 1 where the arm goes around somebody, with the elbow out
+    """
 
     position: Array
     weight: Array
     rotation: Array
     turning: Array
+    around: Array
 
 
 @dataclass(frozen=True, eq=False)
@@ -223,7 +227,12 @@ class Figure:
         heading = rot_z(yaw)
         high = np.clip((goals.position[..., 2] - root[..., 2] + 0.09 * self.skeleton.height) / 0.25, 0.0, 1.0)
         natural = np.stack(
-            [-0.12 - 0.18 * high, MIRROR * (0.42 + 0.15 * high), np.full_like(high, -1.0)], axis=-1
+            [
+                -0.12 - 0.18 * high + 0.4 * goals.around,
+                MIRROR * (0.42 + 0.15 * high + 0.8 * goals.around),
+                0.7 * goals.around - 1.0,
+            ],
+            axis=-1,
         )
         natural = turned(heading[None], natural)
         w = goals.weight[..., None]

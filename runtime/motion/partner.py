@@ -16,7 +16,7 @@ Array = NDArray[np.float64]
 
 #: How a palm lies on each place: fingers inward, fingers up, thumb over.
 LIE: dict[str, tuple[float, float, float]] = {
-    "shoulder": (0.1, 0.35, 1.15), "hand": (0.3, 0.0, 0.0), "back": (1.3, 0.25, 0.0),
+    "shoulder": (0.1, 0.35, 1.15), "hand": (0.3, 0.0, 0.0), "back": (1.45, 0.25, 0.0),
     "waist": (0.95, 0.1, 0.0), "head": (0.3, 0.9, 0.4), "cheek": (0.35, 0.8, 0.0),
     "chest": (0.2, 1.15, 0.0), "elbow": (0.4, 0.2, 0.0), "belly": (0.3, 0.2, 0.0),
 }  # fmt: skip
@@ -35,7 +35,7 @@ def partner_place(other: Figure, place: str, hand: int, faced: bool) -> Array:
     shoulder = bind[JOINT["upperarm_l"]] - bind[JOINT["chest"]]
     on_chest = {
         "shoulder": (0.01 * h, m * 0.86 * shoulder[1], shoulder[2] + 0.05 * h),
-        "back": (-0.10 * h, m * 0.045 * h, 0.35 * shoulder[2]),
+        "back": (-0.092 * h, m * 0.045 * h, 0.35 * shoulder[2]),
         "chest": (0.115 * h, m * 0.04 * h, 0.5 * shoulder[2]),
         "belly": (0.12 * h, 0.0, -0.09 * h),
     }

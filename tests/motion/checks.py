@@ -183,6 +183,19 @@ def _bend(a: Array, b: Array) -> Array:
     return np.asarray(np.degrees(np.arccos(np.clip((_unit(a) * _unit(b)).sum(axis=-1), -1, 1))))
 
 
+def _sat_on(motion: SceneMotion, who: str, world: World) -> set[int]:
+    """Ids of what somebody sits or lies on in the end: they have to be inside it to get there."""
+    seat = motion.end_actors[who].seat
+    if seat is None:
+        return set()
+    return {
+        o.id
+        for o in world.objects
+        for s in o.spots
+        if s.name.startswith(("seat", "lie")) and np.linalg.norm(np.subtract(s.position, seat)) < 0.35
+    }
+
+
 def _clearance(motion: SceneMotion, who: str, world: World) -> float:
     """How far a body that goes somewhere keeps from solid things above knee height, metres."""
     solids = world.solids
@@ -195,7 +208,10 @@ def _clearance(motion: SceneMotion, who: str, world: World) -> float:
         return 10.0
     feet = motion.position[who][:, 2]
     worst = 10.0
-    for centre, half, yaw in zip(solids.centre, solids.half, solids.yaw, strict=True):
+    own = _sat_on(motion, who, world)
+    for centre, half, yaw, owner in zip(solids.centre, solids.half, solids.yaw, solids.object, strict=True):
+        if int(owner) in own:
+            continue
         low, high = centre[2] - half[2], centre[2] + half[2]
         level = (high > feet + 0.3) & (low < feet + 1.5) & going
         if not level.any():

@@ -215,7 +215,8 @@ def approach(
             return _at_spot(spot, state.world, people, start, wide=high > 0.2)
     seat = seat_of(target, state, who)
     if seat is not None:
-        return _before_seat(seat, state.world, people, start)
+        stands = [s for s in item.spots if s.name.startswith("stand")] if item is not None else []
+        return _before_seat(seat, stands, state.world, people, start)
     if item is None or item.kind in ("room", "area"):
         middle = room_middle(state) if item is None else _middle(item)
         return _at_spot(Spot("middle", middle), state.world, people, start, wide=True)
@@ -291,10 +292,18 @@ def _around(item: WorldObject, world: World, people: Discs, start: Place | None)
     return best
 
 
-def _before_seat(seat: Spot, world: World, people: Discs, start: Place | None) -> Stop | None:
+def _before_seat(
+    seat: Spot, stands: list[Spot], world: World, people: Discs, start: Place | None
+) -> Stop | None:
+    """Before a seat; where there is no room (a piano, a tractor), beside it, where its ``stands`` say."""
     facing = seat.facing if seat.facing is not None else 0.0
     x = seat.position[0] + 0.55 * math.cos(facing)
     y = seat.position[1] + 0.55 * math.sin(facing)
+    beside = [s for s in stands if _usable(s, world, people, start)]
+    if beside and _clear(world, (x, y, beside[0].position[2]), people) <= 0.0:
+        near = seat.position if start is None else (*start[:2], 0.0)
+        spot = min(beside, key=lambda s: math.dist(s.position[:2], near[:2]))
+        return Stop(*spot.position[:2], facing, spot.position[2])
     found = nearest_free(world, (x, y, seat.position[2]), people, within=0.7, start=start)
     if found is None:  # a chair pushed in: from the side or from behind
         found = nearest_free(world, seat.position, people, within=1.3, start=start)

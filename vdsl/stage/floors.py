@@ -147,7 +147,12 @@ def ceiling_mesh(room: Room, part: int, holes: list[Rect]) -> Mesh:
 
 def _sheet(rect: Rect, z: float) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
     x0, y0, x1, y1 = rect
-    nx, ny = max(1, round((x1 - x0) / 2.0)), max(1, round((y1 - y0) / 2.0))
+    return sheet(rect, z, max(1, round((x1 - x0) / 2.0)), max(1, round((y1 - y0) / 2.0)))
+
+
+def sheet(rect: Rect, z: float, nx: int, ny: int) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+    """A level sheet at height z in ``nx`` by ``ny`` quads, facing up: vertices [V, 3], triangles [F, 3]."""
+    x0, y0, x1, y1 = rect
     gx, gy = np.meshgrid(np.linspace(x0, x1, nx + 1), np.linspace(y0, y1, ny + 1), indexing="ij")
     vertices = np.stack([gx.ravel(), gy.ravel(), np.full(gx.size, z)], 1)
     i, j = np.meshgrid(np.arange(nx), np.arange(ny), indexing="ij")

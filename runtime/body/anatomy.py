@@ -12,7 +12,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from .field import Field, Knot, ellipsoid, loft, round_cone, union
+from .field import Field, Knot, ellipsoid, loft, round_cone, union, within
 from .proportions import Proportions, make_skeleton, proportions
 from .skeleton import JOINT, Skeleton
 from .spec import BodySpec
@@ -270,7 +270,9 @@ def hand(f: Figure) -> Field:
 
 def arm(f: Figure) -> Field:
     """The bare left arm with its hand."""
-    return union([(arm_loft(f), 0.0), (hand(f), 0.05 * f.p.hand)])
+    k = f.p.hand
+    fist = within(hand(f), arm_point(f, f.p.upper_arm + f.p.forearm + 0.45 * k), 0.80 * k)
+    return union([(arm_loft(f), 0.0), (fist, 0.05 * k)])
 
 
 def leg_loft(f: Figure, grow: float = 0.0) -> Field:

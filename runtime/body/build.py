@@ -36,11 +36,12 @@ from .weights import (
     mouth_weights,
     rigid,
     strongest,
+    swapped,
     tooth_weights,
 )
 
 #: Raised with every change of shape, so that old cache files are not read.
-VERSION = 15
+VERSION = 16
 
 
 @dataclass(frozen=True, eq=False)
@@ -161,7 +162,6 @@ def _finish(
     if piece.symmetry == "whole":
         return vertices, normals, faces, weights
     twin = other_side(piece)
-    other_weights = _weights(figure, twin, normals * np.array([1.0, -1.0, 1.0]))
     n = len(vertices)
     index = np.arange(n) + n
     if piece.symmetry == "half":
@@ -173,7 +173,7 @@ def _finish(
     flipped = normals * np.array([1.0, -1.0, 1.0])
     vertices = np.concatenate([vertices, twin.patch.vertices])
     normals = np.concatenate([normals, flipped])
-    weights = np.concatenate([weights, other_weights])
+    weights = np.concatenate([weights, swapped(weights)])
     used, inverse = np.unique(faces, return_inverse=True)
     return vertices[used], normals[used], inverse.reshape(-1, 3), weights[used]
 

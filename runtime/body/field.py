@@ -161,6 +161,25 @@ def carve(solid: Field, tool: Field, k: float) -> Field:
     return lambda p: -smooth_min(-solid(p), tool(p), k)
 
 
+def within(solid: Field, centre: ArrayLike, radius: float) -> Field:
+    """The solid, which lies in a ball; outside that its distance is not asked for but bounded from below.
+
+    Leave at least the fillet with which it is joined between its surface and the ball's.
+    """
+    c = np.asarray(centre, float)
+
+    def field(p: Points) -> Values:
+        out = sum((p[:, k] - c[k]) ** 2 for k in range(3))
+        out = np.sqrt(out)
+        near = np.flatnonzero(out < radius)
+        out -= 0.5 * radius
+        if len(near):
+            out[near] = solid(p[near])
+        return np.asarray(out)
+
+    return field
+
+
 def offset(solid: Field, by: float) -> Field:
     """The solid grown by ``by`` metres."""
     return lambda p: solid(p) - by

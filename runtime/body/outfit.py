@@ -101,7 +101,7 @@ def surface_of(f: Figure, solid: Field, low_z: float, high_z: float, arm: bool, 
     """The left half of a garment's surface between two heights, ``arm`` telling whether it has a sleeve."""
     low, high = _box(f, low_z, high_z, arm)
     return half(
-        simplify(polygonise(solid, low, high, 0.0088 * f.p.height / 1.7), round(f.detail * faces), solid)
+        simplify(polygonise(solid, low, high, 0.0120 * f.p.height / 1.7), round(f.detail * faces), solid)
     )
 
 

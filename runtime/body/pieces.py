@@ -99,19 +99,21 @@ def tucked(piece: Piece, cover: Field) -> Piece:
 def drawn_in(piece: Piece, cover: Field, depth: float, hem: float) -> Piece:
     """The piece brought at least ``depth`` metres below ``cover`` wherever it is above a hem."""
     vertices = piece.patch.vertices
-    above = np.clip((vertices[:, 2] - hem) / 0.02 + 0.3, 0.0, 1.0)
-    return _moved_in(piece, above * np.clip(cover(vertices) + depth, 0.0, 0.02) * (cover(vertices) < 0.02))
+    above, over = np.clip((vertices[:, 2] - hem) / 0.02 + 0.3, 0.0, 1.0), cover(vertices)
+    return _moved_in(piece, above * np.clip(over + depth, 0.0, 0.02) * (over < 0.02))
 
 
 def _moved_in(piece: Piece, push: Values) -> Piece:
     """The piece's vertices ``push`` [N] metres further in."""
     assert piece.solid is not None
-    vertices = piece.patch.vertices
-    slope = gradient(piece.solid, vertices)
+    vertices = piece.patch.vertices.copy()
+    moved = np.flatnonzero(push)
+    slope = gradient(piece.solid, vertices[moved])
     if piece.symmetry == "half":
-        slope[np.abs(vertices[:, 1]) < 1e-9, 1] = 0.0
+        slope[np.abs(vertices[moved, 1]) < 1e-9, 1] = 0.0
     slope /= np.maximum(np.linalg.norm(slope, axis=1, keepdims=True), 1e-9)
-    return replace(piece, patch=Patch(vertices - slope * push[:, None], piece.patch.faces))
+    vertices[moved] -= slope * push[moved, None]
+    return replace(piece, patch=Patch(vertices, piece.patch.faces))
 
 
 def other_side(piece: Piece) -> Piece:

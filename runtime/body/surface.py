@@ -28,8 +28,8 @@ class Patch:
 def polygonise(field: Field, low: ArrayLike, high: ArrayLike, step: float) -> Patch:
     """The zero surface of a field inside a box, by marching cubes on a grid of ``step`` metres.
 
-    Fine values are taken only near the surface, found on a grid four times as coarse: parts thinner
-    than about two steps may be missed. Vertices lie on the grid's edges, by linear interpolation.
+    Fine values are taken only near the surface, found on grids four times and twice as coarse: parts
+    thinner than about two steps may be missed. Vertices lie on the grid's edges, by linear interpolation.
     """
     lo, hi = np.asarray(low, float), np.asarray(high, float)
     blocks = np.maximum(np.ceil((hi - lo) / (4 * step)).astype(int), 1)
@@ -37,17 +37,27 @@ def polygonise(field: Field, low: ArrayLike, high: ArrayLike, step: float) -> Pa
     centres = np.stack(np.meshgrid(*axes, indexing="ij"), -1).reshape(-1, 3)
     coarse = field(centres)
     near = np.flatnonzero(np.abs(coarse) < 4.4 * step)
-    near_value = np.repeat(np.where(coarse > 0, step, -step), 64).reshape(*blocks, 4, 4, 4)
-    sub = (np.stack(np.meshgrid(*[np.arange(4)] * 3, indexing="ij"), -1).reshape(-1, 3) - 1.5) * step
-    fine = field((centres[near][:, None] + sub).reshape(-1, 3)).reshape(-1, 4, 4, 4)
-    near_value.reshape(-1, 4, 4, 4)[near] = fine
-    volume = near_value.transpose(0, 3, 1, 4, 2, 5).reshape(*(blocks * 4))
+    values = np.repeat(np.where(coarse > 0, step, -step), 64).reshape(-1, 4, 4, 4)
+    values[near] = _refined(field, centres[near], step)
+    volume = values.reshape(*blocks, 4, 4, 4)
+    volume = volume.transpose(0, 3, 1, 4, 2, 5).reshape(*(blocks * 4))
     volume = np.pad(volume, 1, constant_values=step)
     if not (volume < 0).any():
         return Patch(np.zeros((0, 3)), np.zeros((0, 3), np.int64))
     vertices, faces, _, _ = marching_cubes(volume.astype(np.float32), 0.0, spacing=(step,) * 3)
     vertices = vertices.astype(np.float64) + (lo + 0.5 * step - step)
     return Patch(vertices, faces.astype(np.int64))
+
+
+def _refined(field: Field, centres: Points, step: float) -> NDArray[np.float64]:
+    """Values [N, 4, 4, 4] around the centres of blocks; far from the surface only their sign is right."""
+    corner = np.stack(np.meshgrid(*[(-1.0, 1.0)] * 3, indexing="ij"), -1).reshape(-1, 3)
+    middles = (centres[:, None] + corner * step).reshape(-1, 3)
+    rough = field(middles)
+    near = np.flatnonzero(np.abs(rough) < 2.6 * step)
+    values = np.repeat(np.where(rough > 0, step, -step), 8).reshape(-1, 8)
+    values[near] = field((middles[near, None] + corner * (0.5 * step)).reshape(-1, 3)).reshape(-1, 8)
+    return values.reshape(-1, 2, 2, 2, 2, 2, 2).transpose(0, 1, 4, 2, 5, 3, 6).reshape(-1, 4, 4, 4)
 
 
 def settle(field: Field, vertices: Points, reach: float) -> Points:
@@ -111,25 +121,24 @@ def split(patch: Patch, cut: Field) -> tuple[Patch, Patch]:
     values = _off_zero(cut(patch.vertices))
     edges, position = _border(patch, cut, values)
     vertices = np.concatenate([patch.vertices, position])
-    index = {}
-    for k, (a, b) in enumerate(edges.tolist()):
-        index[(a, b)] = len(patch.vertices) + k
-    below: list[tuple[int, int, int]] = []
-    above: list[tuple[int, int, int]] = []
-    negative = values < 0
-    count = negative[patch.faces].sum(1)
-    for face in patch.faces[(count == 1) | (count == 2)].tolist():
-        lone = 1 if int(negative[face].sum()) == 1 else 0
-        at = next(i for i in range(3) if negative[face[i]] == bool(lone))
-        a, b, c = face[at], face[(at + 1) % 3], face[(at + 2) % 3]
-        ab, ac = index[(min(a, b), max(a, b))], index[(min(a, c), max(a, c))]
-        single, double = (below, above) if lone else (above, below)
-        single.append((a, ab, ac))
-        double.append((ab, b, c))
-        double.append((ab, c, ac))
-    keep_in = np.concatenate([patch.faces[count == 3], np.array(below, np.int64).reshape(-1, 3)])
-    keep_out = np.concatenate([patch.faces[count == 0], np.array(above, np.int64).reshape(-1, 3)])
-    return compact(Patch(vertices, keep_in)), compact(Patch(vertices, keep_out))
+    n = len(patch.vertices)
+    keys = edges[:, 0] * n + edges[:, 1]
+
+    def between(p: NDArray[np.int64], q: NDArray[np.int64]) -> NDArray[np.int64]:
+        return n + np.searchsorted(keys, np.minimum(p, q) * n + np.maximum(p, q))
+
+    negative = (values < 0)[patch.faces]
+    count = negative.sum(1)
+    parts = {True: [patch.faces[count == 3]], False: [patch.faces[count == 0]]}
+    for number, lone in ((1, True), (2, False)):  # one corner inside, or one outside
+        faces = patch.faces[count == number]
+        at = np.argmax(negative[count == number] == lone, axis=1)
+        a, b, c = (np.take_along_axis(faces, (at[:, None] + k) % 3, 1)[:, 0] for k in range(3))
+        ab, ac = between(a, b), between(a, c)
+        parts[lone].append(np.stack([a, ab, ac], 1))
+        parts[not lone] += [np.stack([ab, b, c], 1), np.stack([ab, c, ac], 1)]
+    inside, outside = (Patch(vertices, np.concatenate(parts[side])) for side in (True, False))
+    return compact(inside), compact(outside)
 
 
 def _off_zero(values: Values) -> Values:
@@ -137,11 +146,11 @@ def _off_zero(values: Values) -> Values:
 
 
 def _border(patch: Patch, cut: Field, values: Values) -> tuple[NDArray[np.int64], Points]:
-    pairs = np.sort(
-        np.concatenate([patch.faces[:, [0, 1]], patch.faces[:, [1, 2]], patch.faces[:, [2, 0]]]), axis=1
-    )
-    pairs = np.unique(pairs, axis=0)
-    pairs = pairs[(values[pairs[:, 0]] < 0) != (values[pairs[:, 1]] < 0)]
+    p, q = patch.faces, np.roll(patch.faces, -1, axis=1)
+    across = (values[p] < 0) != (values[q] < 0)
+    n = len(patch.vertices)
+    keys = np.unique(np.minimum(p, q)[across] * n + np.maximum(p, q)[across])
+    pairs = np.stack([keys // n, keys % n], 1)
     a, b = patch.vertices[pairs[:, 0]], patch.vertices[pairs[:, 1]]
     t0, t1 = np.zeros(len(pairs)), np.ones(len(pairs))
     f0, f1 = values[pairs[:, 0]], values[pairs[:, 1]]
@@ -162,8 +171,9 @@ def compact(patch: Patch) -> Patch:
     corner = patch.vertices[patch.faces]
     area = np.linalg.norm(np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0]), axis=1)
     faces = patch.faces[area > 1e-11]
-    used, inverse = np.unique(faces, return_inverse=True)
-    return Patch(patch.vertices[used], inverse.reshape(-1, 3).astype(np.int64))
+    used = np.zeros(len(patch.vertices), bool)
+    used[faces] = True
+    return Patch(patch.vertices[used], (np.cumsum(used) - 1)[faces])
 
 
 def cull(patch: Patch, solid: Field, depth: float) -> Patch:

@@ -136,6 +136,11 @@ def cape_weights(figure: Figure, points: Points) -> NDArray[np.float64]:
     return w
 
 
+def swapped(weights: NDArray[np.float64]) -> NDArray[np.float64]:
+    """The weights of the mirror images of points."""
+    return weights[:, _SWAP]
+
+
 def rigid(name: str, count: int) -> NDArray[np.float64]:
     """Weights of points that hang on one joint alone."""
     w = np.zeros((count, len(PALETTE)))

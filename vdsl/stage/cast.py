@@ -8,45 +8,44 @@ from runtime.body.spec import AGES, BUILDS, BodySpec, Colour
 from vdsl.lang.definitions.cast import DEFAULTS, CastDef
 from vdsl.lang.definitions.looks import BODIES, NUMBERS, colour_of
 
-_COLOURS = {
-    "skin": "skin",
-    "eyes": "eye_color",
-    "hair-color": "hair_color",
-    "top": "top_color",
-    "shirt": "shirt_color",
-    "bottom": "bottom_color",
-    "shoes": "shoes_color",
-    "hat-color": "hat_color",
-    "accent": "accent_color",
-}
-_WORDS = {
-    "hair": "hair",
-    "facial-hair": "facial_hair",
-    "top-kind": "top",
-    "bottom-kind": "bottom",
-    "shoes-kind": "shoes",
-    "hat": "hat",
-    "neck": "neck",
-    "over": "over",
-    "back": "back",
-}
-_SWITCHES = ("glasses", "belt", "gloves", "badge")
-
 
 def body_spec(cast: CastDef, arguments: Mapping[str, float | str] | None = None) -> BodySpec:
     """The body of one person. Arguments are taken as checked; a number out of bounds is brought within."""
     look = cast.features(dict(arguments or {}))
-    colours = {field: _colour(str(look[name]), name) for name, field in _COLOURS.items()}
-    words = {field: str(look[name]) for name, field in _WORDS.items()}
-    switches = {name: look[name] == "yes" for name in _SWITCHES}
+
+    def word(name: str) -> str:
+        return str(look[name])
+
+    def tint(name: str) -> Colour:
+        return _colour(word(name), name)
+
     return BodySpec(
         height=_number("height", look["height"], {}),
         build=_number("build", look["build"], BUILDS),
         femininity=_number("body", look["body"], BODIES),
         age=_number("age", look["age"], AGES),
-        **words,
-        **switches,
-        **colours,
+        skin=tint("skin"),
+        eye_color=tint("eyes"),
+        hair=word("hair"),
+        hair_color=tint("hair-color"),
+        facial_hair=word("facial-hair"),
+        glasses=word("glasses") == "yes",
+        top=word("top-kind"),
+        top_color=tint("top"),
+        shirt_color=tint("shirt"),
+        bottom=word("bottom-kind"),
+        bottom_color=tint("bottom"),
+        shoes=word("shoes-kind"),
+        shoes_color=tint("shoes"),
+        hat=word("hat"),
+        hat_color=tint("hat-color"),
+        neck=word("neck"),
+        over=word("over"),
+        back=word("back"),
+        belt=word("belt") == "yes",
+        gloves=word("gloves") == "yes",
+        badge=word("badge") == "yes",
+        accent_color=tint("accent"),
     )
 
 

@@ -192,9 +192,14 @@ class Route:
     def _palm(self, hand: int, at: Array | None = None, yaw: float | None = None) -> Triple:
         """Where a palm is planted on all fours."""
         palms = self.row(self.posture).palms if self.low else None
-        ahead, out, _ = palms if palms is not None else (0.3, self.hip, 0.0)
+        out = palms[1] if palms is not None else self.hip
         at, yaw = self.at if at is None else at, self.heading if yaw is None else yaw
-        return self._from_root(ahead, (1.0 - 2.0 * hand) * out, 0.0, at, yaw)
+        return self._from_root(self._palm_ahead(), (1.0 - 2.0 * hand) * out, 0.0, at, yaw)
+
+    def _palm_ahead(self) -> float:
+        """How far before the root a palm is planted."""
+        palms = self.row(self.posture).palms if self.low else None
+        return palms[0] if palms is not None else 0.3
 
     # -- going -----------------------------------------------------------------------------
 
@@ -226,6 +231,9 @@ class Route:
         if going.stairs and goes:
             slow = climbing(line, going.stairs, step)
             arc = np.concatenate([[0.0], np.cumsum(np.diff(arc) * 0.5 * (slow[1:] + slow[:-1]))])
+        if self.low and goes:  # palms planted ahead have the longer way around a bend
+            ahead = self._palm_ahead()
+            arc = np.concatenate([[0.0], np.cumsum(np.hypot(np.diff(arc), ahead * np.diff(tangent)))])
         period = gait.period * np.sqrt(self.skeleton.height / 1.7) * going.stride[1] / speed
         times = timing(float(arc[-1]), step / period, gait.ramp / speed, first, last, speed)
         xyz, yaw = self._root_way(line, arc, tangent, times, first, last)

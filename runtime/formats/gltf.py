@@ -17,7 +17,8 @@ from scipy.sparse import csr_matrix
 from . import limits
 from .detail import divided
 from .errors import ModelFileError
-from .gltf_file import TRIANGLE_MODES, TYPE_WIDTH, GltfFile, read_gltf_file
+from .gltf_file import GltfFile, read_gltf_file
+from .gltf_rules import TRIANGLE_MODES, TYPE_WIDTH
 from .model import Array, Model, Piece
 from .paths import beside, data_uri, read_bytes
 from .textures import Pixels, decode, on_faces, srgb

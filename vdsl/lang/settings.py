@@ -7,7 +7,8 @@ from fractions import Fraction
 
 from . import ast, words
 from .diagnostics import Report, listing, nearest
-from .options import MOST_PROPOSALS, MOST_TAKES, read_count
+from .option_values import read_count
+from .options import MOST_PROPOSALS, MOST_TAKES
 
 #: Frame rates that are written rounded and meant exactly.
 EXACT_FPS = {

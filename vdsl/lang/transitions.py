@@ -5,7 +5,7 @@ from __future__ import annotations
 from . import ast
 from .diagnostics import Report
 from .ir import Transition
-from .options import read_time
+from .option_values import read_time
 
 DEFAULT_SECONDS = {"cut": 0.0, "dissolve": 0.5, "fade-out": 1.0, "fade-in": 1.0, "wipe": 0.5}
 LONGEST_TRANSITION = 10.0

@@ -12,7 +12,8 @@ from lang_helpers import HEAD
 from vdsl.lang import Report, Source, ast, check, ir, parse, words
 from vdsl.lang.definitions.action import BODY_PLACES, CENTRE, GAZES, HANDS, SIDED
 from vdsl.lang.definitions.looks import FEATURES
-from vdsl.lang.definitions.prop import ENTRIES, MATERIALS
+from vdsl.lang.definitions.primitives import MATERIALS
+from vdsl.lang.definitions.prop import ENTRIES
 from vdsl.lang.definitions.set import ROOM_ENTRIES, SET_ENTRIES
 from vdsl.lang.options import _READERS as OPTIONS
 from vdsl.lang.parse import STATEMENTS

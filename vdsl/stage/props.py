@@ -14,7 +14,8 @@ from numpy.typing import NDArray
 from runtime import shapes
 from runtime.mesh import Mesh, join
 
-from ..lang.definitions.prop import Primitive, PropShape, PropSpot
+from ..lang.definitions.primitives import Primitive
+from ..lang.definitions.prop import PropShape, PropSpot
 from .models import FileProp, file_prop
 
 #: Boxes with no side longer than this are nothing to bump into.

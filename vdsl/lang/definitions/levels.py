@@ -22,7 +22,8 @@ from .placing import (
     placed_node,
     read_placed,
 )
-from .prop import MATERIALS, Point, PropSpot, read_spot, unrolled
+from .primitives import MATERIALS, Point
+from .prop import PropSpot, read_spot, unrolled
 from .reader import Reader, unknown_entry
 from .types import SetNode
 

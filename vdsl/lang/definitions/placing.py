@@ -15,7 +15,8 @@ from ..diagnostics import Report, nearest
 from ..evaluate import Bound, evaluate_arguments
 from ..source import Span
 from .colours import checked_colour, colour
-from .prop import Point, PropDef, PropSpot, read_spot, unrolled
+from .primitives import Point
+from .prop import PropDef, PropSpot, read_spot, unrolled
 from .reader import Reader, unknown_entry
 from .types import SetNode
 

@@ -30,7 +30,8 @@ from .placing import (
     read_placed,
     walk_placed,
 )
-from .prop import MATERIALS, Point, PropDef, PropSpot, read_spot, unrolled
+from .primitives import MATERIALS, Point
+from .prop import PropDef, PropSpot, read_spot, unrolled
 from .reader import Reader, unknown_entry
 from .types import DefinitionBase, SetNode
 

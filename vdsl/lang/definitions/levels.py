@@ -9,22 +9,13 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field, replace
 
-from .. import ast
 from ..diagnostics import Report, nearest
 from ..source import Span
 from .colours import Colour, checked_colour
-from .placing import (
-    PLACE_ENTRIES,
-    WALLS,
-    Placed,
-    check_names,
-    numbered,
-    placed_node,
-    read_placed,
-)
+from .placing import WALLS, Placed, placed_node, read_standing
 from .primitives import MATERIALS, Point
-from .prop import PropSpot, read_spot, unrolled
-from .reader import Reader, unknown_entry
+from .prop import PropSpot
+from .reader import Reader
 from .types import SetNode
 
 #: A step a person takes without thinking, metres.
@@ -162,7 +153,7 @@ def read_platform(reader: Reader, path: tuple[str, ...], corner: Point) -> Platf
     if min(*size, rise, run) <= 0:
         reader.report.error("VDS101", reader.span, label="a size here is zero or less")
         return None
-    placed, spots = _standing(body, reader)
+    placed, spots = read_standing(body, reader, "a platform", parent=False)
     x, y, z = corner
     return Platform(
         (*path, name), (x + at[0], y + at[1], z + size[2]), size, floor, floor_color, color, steps,
@@ -176,24 +167,6 @@ def _is_side(word: str, reader: Reader) -> bool:
     label = f"`{word}` is no side of it"
     reader.report.error("VDS241", reader.span, label=label, suggestion=nearest(word, WALLS))
     return False
-
-
-def _standing(body: tuple[ast.Entry, ...], reader: Reader) -> tuple[tuple[Placed, ...], tuple[PropSpot, ...]]:
-    placed: list[Placed] = []
-    spots: list[PropSpot] = []
-    for child, env in unrolled(body, reader.env, reader.report):
-        inner = Reader(child, env, reader.report)
-        if inner.head == "place":
-            item = read_placed(inner, parent=False)
-            if item is not None:
-                placed.append(item)
-        elif inner.head == "spot":
-            spots.append(read_spot(inner, 2))
-        else:
-            unknown_entry(child, PLACE_ENTRIES, "a platform", reader.report)
-    placed = numbered(placed)
-    check_names([(p.name, p.span) for p in placed], reader.report)
-    return tuple(placed), tuple(spots)
 
 
 def flight_node(flight: Flight) -> SetNode:

@@ -62,6 +62,7 @@ class Placed:
 
 
 def read_call(reader: Reader, default: str) -> ast.Call:
+    """``= table(width 1.3m)``; the prop ``default`` without arguments where nothing is said."""
     if not reader.entry.bound:
         name = ast.Name((default,), reader.entry.head.span)
         if reader.entry.values:
@@ -71,6 +72,7 @@ def read_call(reader: Reader, default: str) -> ast.Call:
 
 
 def read_placed(reader: Reader, parent: bool) -> Placed | None:
+    """One ``place`` with all in its braces; ``parent``: it stands on a prop, and may say on which spot."""
     name = reader.value_word(0)
     call = read_call(reader, name)
     wall = None if parent else reader.word("wall", None, WALLS)
@@ -86,29 +88,36 @@ def read_placed(reader: Reader, parent: bool) -> Placed | None:
     turn = reader.angle("turn", 0.0)
     body = reader.body()
     reader.done()
+    children, spots = read_standing(body, reader, "a placed prop", parent=True)
+    if not name:
+        return None
+    on_span = next((o.span for o in reader.entry.options if o.name.text == "on"), reader.span)
+    return Placed(name, call, reader.env, at, up, turn, wall, on, spots, children, reader.span, on_span)
+
+
+def read_standing(
+    body: tuple[ast.Entry, ...], reader: Reader, where: str, parent: bool
+) -> tuple[tuple[Placed, ...], tuple[PropSpot, ...]]:
+    """The props and spots in braces of ``where``: on a prop, as ``parent`` says, or on a floor."""
+    placed: list[Placed] = []
     spots: list[PropSpot] = []
-    children: list[Placed] = []
     for child, env in unrolled(body, reader.env, reader.report):
         inner = Reader(child, env, reader.report)
         if inner.head == "place":
-            item = read_placed(inner, parent=True)
+            item = read_placed(inner, parent)
             if item is not None:
-                children.append(item)
+                placed.append(item)
         elif inner.head == "spot":
-            spots.append(read_spot(inner, 3))
+            spots.append(read_spot(inner, 3 if parent else 2))
         else:
-            unknown_entry(child, PLACE_ENTRIES, "a placed prop", reader.report)
-    if not name:
-        return None
-    children = numbered(children)
-    check_names([(c.name, c.span) for c in children], reader.report)
-    on_span = next((o.span for o in reader.entry.options if o.name.text == "on"), reader.span)
-    return Placed(
-        name, call, reader.env, at, up, turn, wall, on, tuple(spots), tuple(children), reader.span, on_span
-    )
+            unknown_entry(child, PLACE_ENTRIES, where, reader.report)
+    placed = numbered(placed)
+    check_names([(p.name, p.span) for p in placed], reader.report)
+    return tuple(placed), tuple(spots)
 
 
 def placed_node(item: Placed) -> SetNode:
+    """Its place in the tree of names, with what stands on it."""
     spots = tuple(dict.fromkeys(s.name for s in item.spots))
     return SetNode(item.name, "object", item.prop, spots, tuple(map(placed_node, item.children)), item.span)
 
@@ -124,6 +133,7 @@ def numbered(items: list[Placed]) -> list[Placed]:
 
 
 def check_names(named: list[tuple[str, Span]], report: Report) -> None:
+    """Names used twice side by side, each at its second place."""
     seen: dict[str, Span] = {}
     for name, span in named:
         if name in seen:

@@ -383,6 +383,7 @@ class Performer:
         c = self.channels
         weight = c.pair("fingers", "weight")
         relaxed = 0.30 + 0.04 * self.arm_noise / 0.02 * 0.3 + 0.35 * self.run
+        relaxed = relaxed + self.plan.manner.fists * (1.0 - relaxed)
         curl = relaxed + tracks.grip * (0.62 - relaxed)
         curl = curl + weight * (c.pair("fingers", "curl") - curl) + c.pair("fingers", "curl+")
         point = weight * c.pair("fingers", "point")

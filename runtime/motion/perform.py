@@ -39,7 +39,8 @@ def perform(
 ) -> SceneMotion:
     """Everybody over one shot: those with a task act, the others idle and watch.
 
-    feelings: by person, a word of :data:`runtime.motion.feelings.FEELINGS`; it wins over the action's own
+    feelings: by person, a word of :data:`runtime.motion.feelings.FEELINGS`; it wins over the manner's, and
+        that over the action's own
 
     duration: seconds of the shot; None: as long as the longest task (3 s where nobody has one). A shot
     shorter than its action is cut off, and ends in the state the action would have led to.
@@ -88,6 +89,8 @@ def _feel(plans: dict[str, Plan], tasks: dict[str, Task], feelings: dict[str, st
     for name, plan in plans.items():
         if name in feelings:
             plan.feelings.append((feelings[name], -1e6, 1e6))
+        elif plan.manner.feeling:
+            plan.feelings.append((plan.manner.feeling, -1e6, 1e6))
         elif name in tasks and tasks[name].clip.feeling and plan.windows:
             window = plan.windows[-1]
             plan.feelings.append((tasks[name].clip.feeling, window.start, window.at(1.0)))

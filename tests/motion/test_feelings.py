@@ -107,3 +107,19 @@ def test_an_action_brings_its_own_feeling_and_the_lines_wins() -> None:
     middle = own.frames // 2
     assert turn_of(own, "mouth_l", "head")[middle] > 0.08
     assert turn_of(lines, "mouth_l", "head")[middle] < -0.08
+
+
+def test_a_manner_shows_on_the_face_unless_the_line_feels_otherwise() -> None:
+    spec = FACES["woman"]
+    clip = ActionClip("stay", (Variant("plain", 2.0, Timeline()),), "none", feeling="happy")
+
+    def shown(manner: str, word: str = "") -> NDArray[np.float64]:
+        actor = Actor(make_skeleton(spec), ActorState((0.0, 0.0, 0.0), 0.0))
+        tasks = {"anna": Task(clip, duration=2.0, manner=manner)}
+        feelings = {"anna": word} if word else {}
+        return face(spec, perform({"anna": actor}, tasks, {}, 12.0, 3, 2.0, feelings=feelings))
+
+    angrily = shown("angrily")
+    assert np.linalg.norm(angrily - shown(""), axis=1).max() > 0.002  # not as the action has it
+    assert np.linalg.norm(angrily - shown("angrily", "sad"), axis=1).max() > 0.002
+    assert np.allclose(angrily, shown("angrily", "angry"), atol=1e-4)

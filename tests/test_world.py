@@ -372,6 +372,23 @@ def test_houses_are_lit_at_night_and_shelters_are_not() -> None:
     assert not (w.mesh.materials == MATERIALS.index("glass")).any()
 
 
+def test_stained_glass_keeps_its_colours_at_night() -> None:
+    day, night = world("church"), world("church", "night")
+    glass = day.mesh.materials == MATERIALS.index("glass")
+    own, late = day.mesh.colors[glass], night.mesh.colors[glass]
+    red = own[:, 0] > 1.5 * own[:, 2]
+    assert red.any()
+    assert (late[red, 0] > late[red, 2]).all()
+    assert late.mean() < own.mean()
+
+
+@pytest.mark.parametrize("time", ["dawn", "dusk", "night"])
+def test_low_light_indoors_is_warm_where_it_falls_and_cool_where_not(time: str) -> None:
+    light = world("apartment", time).light
+    assert light.sun_color[0] > light.sun_color[1] > light.sun_color[2]
+    assert light.sky[2] >= light.sky[0]
+
+
 # --- what a set brings of its own -------------------------------------------------------
 
 

@@ -7,18 +7,18 @@ name resolved and every default filled in. One pass over the statements, top to 
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
 from pathlib import PurePath
 
 from . import ast
-from .beats import BeatReader, resolve, unknown_character
+from .beats import BeatReader, unknown_character
 from .catalog import CatalogLike
-from .diagnostics import Report, listing
+from .diagnostics import Report
 from .files import used_scripts
 from .hands import Hands
 from .ids import Ids
-from .ir import Beat, Character, Placement, Scene, Storyboard, StoryLine, Target
+from .ir import Beat, Character, Scene, Storyboard, StoryLine, Target
 from .lookup import Lookup, Setting
+from .placement import SceneBeingRead, appear, place, someone_or_something
 from .scope import Scope
 from .settings import Settings, read_header
 from .shots import DEFAULT_PROPOSALS, DEFAULT_STYLE, DEFAULT_TAKES, Defaults, LineContext, read_shots
@@ -35,24 +35,6 @@ def check(
     return None if report.has_errors else storyboard
 
 
-@dataclass
-class _Stage:
-    """The scene being read."""
-
-    index: int
-    name: str
-    set_name: str
-    room: tuple[str, ...]
-    time: str
-    scope: Scope | None
-    members: tuple[str, ...]
-    hands: Hands
-    span: Span
-    reader: BeatReader | None = None
-    placements: dict[str, Placement] = field(default_factory=dict)
-    acted: set[str] = field(default_factory=set)
-
-
 class _Checker:
     def __init__(self, script: ast.Script, catalog: CatalogLike, report: Report, overrides: Settings) -> None:
         self.script = script
@@ -62,7 +44,7 @@ class _Checker:
         self.settings = Settings()
         self.title: ast.Title | None = None
         self.characters: dict[str, Character] = {}
-        self.stage: _Stage | None = None
+        self.stage: SceneBeingRead | None = None
         self.scenes: list[Scene] = []
         self.lines: list[StoryLine] = []
         self.ids = Ids()
@@ -106,7 +88,9 @@ class _Checker:
         """A scene whose line does not read: what happens in it is checked as far as it can be."""
         self._finish_scene()
         members, hands = self._members(index), Hands(self.catalog, self.report)
-        self.stage = _Stage(len(self.scenes), line.name or "", "", (), "day", None, members, hands, line.span)
+        self.stage = SceneBeingRead(
+            len(self.scenes), line.name or "", "", (), "day", None, members, hands, line.span
+        )
 
     def _storyboard(self) -> Storyboard:
         said, over = self.settings, self.overrides
@@ -161,7 +145,9 @@ class _Checker:
         elif isinstance(statement, ast.SceneLine):
             self._scene(index, statement)
         elif isinstance(statement, ast.PlacementLine):
-            self._placement(statement)
+            stage = self._need_stage(statement.span) if self._is_known(statement.character) else None
+            if stage is not None:
+                place(statement, stage, tuple(self.characters), self.report)
         elif isinstance(statement, ast.StoryNode):
             self._story(statement)
         elif isinstance(statement, ast.TransitionLine):
@@ -204,6 +190,11 @@ class _Checker:
             return
         self.characters[name] = self.lookup.character(line)
 
+    def _is_known(self, name: ast.Name) -> bool:
+        if name.text not in self.characters:
+            unknown_character(name, tuple(self.characters), self.report)
+        return name.text in self.characters
+
     # -- scenes ----------------------------------------------------------------------
 
     def _scene(self, index: int, line: ast.SceneLine) -> None:
@@ -227,7 +218,7 @@ class _Checker:
             )
         scope = Scope(found.root, found.room, self.catalog) if found.root is not None else None
         name = line.name.parts[-1] if line.set is None else line.name.text
-        self.stage = _Stage(
+        self.stage = SceneBeingRead(
             index=len(self.scenes),
             name=name,
             set_name=found.set_name,
@@ -266,97 +257,7 @@ class _Checker:
         self.scenes.append(Scene(stage.name, stage.set_name, stage.room, stage.time, placements, stage.span))
         self.stage = None
 
-    # -- placement -------------------------------------------------------------------
-
-    def _placement(self, line: ast.PlacementLine) -> None:
-        name = line.character.text
-        if name not in self.characters:
-            unknown_character(line.character, tuple(self.characters), self.report)
-            return
-        stage = self._need_stage(line.span)
-        if stage is None:
-            return
-        if name in stage.placements and stage.placements[name].at.kind != "free":
-            self.report.error(
-                "VDS068",
-                line.span,
-                label=f"{name} is placed already",
-                help="in a scene everyone is placed once",
-                notes=[(stage.placements[name].span, "first here")],
-            )
-            return
-        if name in stage.acted:
-            self.report.error(
-                "VDS068",
-                line.span,
-                label=f"{name} has acted already, and is where that left them",
-                help="place people before the first story line, or let them walk",
-            )
-            return
-        self._place(name, line, stage)
-
-    def _place(self, name: str, line: ast.PlacementLine, stage: _Stage) -> None:
-        posture = line.posture.text if line.posture else "standing"
-        at: Target | None = Target("free", (), "", line.span)
-        if line.at is not None:
-            at = resolve(line.at, (), stage.scope, self.report)
-        facing = None
-        if line.facing is not None:
-            facing = self._someone_or_something(line.facing, stage)
-        if (
-            at is not None
-            and posture == "sitting"
-            and stage.scope is not None
-            and not self._seat(at, stage.scope)
-        ):
-            place = line.at or line.posture or line.character
-            seats = stage.scope.seats()
-            self.report.error(
-                "VDS069",
-                place.span,
-                label=f"one cannot sit at `{place.text}`" if line.at else "sit where?",
-                help=f"there are {listing(dict.fromkeys(seats), last='and')} to sit on"
-                if seats
-                else "this scene has no seats",
-            )
-        elif at is not None and posture == "sitting" and stage.scope is not None:
-            self._seat_left(at, line, stage.scope, stage.placements)
-        free = Target("free", (), "", line.span)
-        stage.placements[name] = Placement(name, at or free, facing, posture, line.span)
-
-    def _seat_left(
-        self, at: Target, line: ast.PlacementLine, scope: Scope, placed: dict[str, Placement]
-    ) -> None:
-        sits = next(scope.sitting(at, placed.values()), None)
-        if sits is None or scope.has_seat_left(at, placed.values()):
-            return
-        place = line.at or line.character
-        others = [s for s in dict.fromkeys(scope.seats()) if s != place.text]
-        self.report.error(
-            "VDS069",
-            place.span,
-            label=f"{sits.character} sits here already",
-            help=f"other seats: {listing(others, last='and')}" if others else "this scene has no other seat",
-            notes=[(sits.span, "placed here")],
-        )
-
-    def _someone_or_something(self, name: ast.Name, stage: _Stage) -> Target | None:
-        """What a camera is on, or someone faces: a character of this scene, or something in it."""
-        target = resolve(name, tuple(self.characters), stage.scope, self.report)
-        if target is not None and target.kind == "character" and target.path[0] not in stage.members:
-            self.report.error(
-                "VDS077",
-                name.span,
-                label=f"{name.text} is not in scene {stage.name}",
-                help=f"place them first, as in `{name.text} at NAME`",
-            )
-            return None
-        return target
-
-    def _seat(self, at: Target, scope: Scope) -> bool:
-        return at.kind not in ("free", "character") and scope.has_seat(at)
-
-    def _need_stage(self, span: Span) -> _Stage | None:
+    def _need_stage(self, span: Span) -> SceneBeingRead | None:
         if self.stage is None and not any(s.name == "" for s in self.scenes):
             sets = self.catalog.names("set")
             self.report.error(
@@ -385,33 +286,19 @@ class _Checker:
             stage.name,
             done,
             self._subject(done, stage),
-            lambda name: self._someone_or_something(name, stage),
+            lambda name: someone_or_something(name, stage, tuple(self.characters), self.report),
             tuple(self.characters),
         )
         shots = read_shots(node, context, self.defaults, self.ids, self.report)
         self.lines.append(StoryLine(stage.index, done, shots, self.joins.give(), node.span))
 
-    def _beat(self, reader: BeatReader, node: ast.BeatNode, stage: _Stage) -> Beat | None:
+    def _beat(self, reader: BeatReader, node: ast.BeatNode, stage: SceneBeingRead) -> Beat | None:
         for word in node.words:
             if word.text in self.characters:
-                self._appear(word, stage)
+                appear(word, stage, self.report)
         beat = reader.read(node)
         stage.acted.add(node.words[0].text)
         return beat
-
-    def _appear(self, word: ast.Name, stage: _Stage) -> None:
-        """Someone takes part; without a place they get the first free spot."""
-        if word.text in stage.placements:
-            return
-        if stage.scope is not None:
-            self.report.warn(
-                "VDS079",
-                word.span,
-                label=f"{word.text} has not been placed in scene {stage.name}",
-                help=f"a line like `{word.text} at NAME` above says where; else it is the first free spot",
-            )
-        free = Target("free", (), "", word.span)
-        stage.placements[word.text] = Placement(word.text, free, None, "standing", word.span)
 
     def _together(self, beats: tuple[Beat, ...]) -> None:
         """Nobody does two things at once."""
@@ -427,7 +314,7 @@ class _Checker:
                 )
             seen[beat.character] = beat
 
-    def _subject(self, beats: tuple[Beat, ...], stage: _Stage) -> Target | None:
+    def _subject(self, beats: tuple[Beat, ...], stage: SceneBeingRead) -> Target | None:
         """Whom the camera is about: who acts, else the first one in the scene."""
         if beats:
             who, span = beats[0].character, beats[0].span

@@ -12,6 +12,7 @@ from vdsl.emit.types import CUT, Build, BuiltShot, BuiltTake, Subject
 from vdsl.emit.video import write_take
 from vdsl.lang.ir import Beat, Character, Scene, Shot, Storyboard, StoryLine, Target, Transition
 from vdsl.lang.source import Source, Span
+from vdsl.propose.promise import Achieved
 from vdsl.propose.types import CameraProposal
 
 SIZE, FPS = (128, 72), (24, 1)
@@ -57,7 +58,9 @@ def take(folder: Path, name: str, rank: int, frames: int, shade: int) -> BuiltTa
     )  # fmt: skip
     subject = Subject("anna", 1.68, np.zeros((frames, 3)))
     media = write_take(folder, name, rank, pictures(frames, shade), frames, FPS)
-    return BuiltTake(rank, 0.9 - rank / 10, camera, "calm", subject, media)
+    return BuiltTake(
+        rank, 0.9 - rank / 10, camera, "calm", subject, media, Achieved("push", "medium", "eye-level"), 1.5
+    )
 
 
 def built(

@@ -11,6 +11,7 @@ import emit_film as f
 import numpy as np
 import pytest
 
+from vdsl.cinema.measures import MEASURES
 from vdsl.emit.build import write_build
 from vdsl.emit.documents import dump, rounded
 from vdsl.emit.report_json import report_document, write_report
@@ -127,6 +128,13 @@ def fields(value: Any, prefix: str = "") -> set[str]:
     elif isinstance(value, list) and value and isinstance(value[0], dict):
         out |= fields(value[0], prefix[:-1] + "[].")
     return out
+
+
+def test_documented_measures_are_the_measures() -> None:
+    section = DOCS.read_text("utf-8").split("## Measures of a take", 1)[1].split("\n## ", 1)[0]
+    documented = re.findall(r"^\| `([^`]+)` \|", section, re.MULTILINE)
+    assert documented == [*dict.fromkeys(documented)]
+    assert set(documented) == {*MEASURES, "geometry"}
 
 
 @pytest.mark.parametrize(

@@ -21,6 +21,9 @@ WEIGHTS = {
     "steadiness": 0.08,
 }
 
+#: Measures of what spoils a picture, and the share of the score each takes away where it is 1.
+PENALTIES = {"backdrop_gap": 0.5, "foreground": 0.6, "empty": 0.3}
+
 
 def parts(measures: Mapping[str, NDArray[np.float64] | float]) -> dict[str, NDArray[np.float64]]:
     """Every part of the score in 0..1, best 1 (see docs/cinema.md)."""
@@ -46,8 +49,9 @@ def parts(measures: Mapping[str, NDArray[np.float64] | float]) -> dict[str, NDAr
 def geometry_scores(measures: Mapping[str, NDArray[np.float64] | float]) -> NDArray[np.float64]:
     """Scores 0..1 of takes whose measures are arrays [P]."""
     total = sum(WEIGHTS[name] * value for name, value in parts(measures).items())
-    gaps, near, empty = (np.asarray(measures[k], float) for k in ("backdrop_gap", "foreground", "empty"))
-    return np.asarray(total * (1.0 - 0.5 * gaps) * (1.0 - 0.6 * near) * (1.0 - 0.3 * empty))
+    for name, share in PENALTIES.items():
+        total = total * (1.0 - share * np.asarray(measures[name], float))
+    return np.asarray(total)
 
 
 def geometry_score(measures: Mapping[str, float]) -> float:

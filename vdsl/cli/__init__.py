@@ -18,6 +18,7 @@ from .ends import ends_told
 from .explain import explain
 from .preview import preview
 from .train import train
+from .why import why
 
 app = typer.Typer(
     name="vdsc",
@@ -31,6 +32,7 @@ app.command()(check)
 app.command()(explain)
 app.command()(assets)
 app.command()(preview)
+app.command()(why)
 app.command()(train)
 app.command()(bench)
 

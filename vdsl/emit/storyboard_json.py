@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+import hashlib
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from ..lang.ir import Beat
+from ..lang.ir import Beat, Storyboard
 from .documents import MEASURE_DECIMALS, numbers, rounded, write_document
 from .statistics import statistics
 from .timeline import Placed, film_timeline
-from .types import Build, BuiltShot, BuiltTake
+from .types import Build, BuiltShot, BuiltTake, CutFinding, Trade
 from .words import line_words
 
 SCHEMA = "vds.storyboard/1"
@@ -33,14 +35,24 @@ def storyboard_document(build: Build) -> dict[str, Any]:
         "rig": board.rig,
         "style": board.style,
         "source": board.source_name,
+        "script": script_digest(board),
         "judge": build.judge,
         "characters": [c.name for c in board.characters],
         "scenes": [
             {"name": s.name, "set": s.set, "room": ".".join(s.room), "time": s.time} for s in board.scenes
         ],
         "shots": [_shot(s, placed.get(s.shot.id)) for s in build.shots],
+        "edited": build.edited,
+        "trades": [_trade(t) for t in build.trades],
+        "continuity": [_cut(c) for c in build.continuity],
         "statistics": statistics(build),
     }
+
+
+def script_digest(board: Storyboard) -> str:
+    """SHA-256 of the script's text, by which a build is known to be of it."""
+    text = board.lines[0].span.source.text if board.lines else ""
+    return hashlib.sha256(text.encode("utf-8", "surrogatepass")).hexdigest()
 
 
 def _shot(built: BuiltShot, place: Placed | None) -> dict[str, Any]:
@@ -72,6 +84,30 @@ def _shot(built: BuiltShot, place: Placed | None) -> dict[str, Any]:
     }
 
 
+def _trade(trade: Trade) -> dict[str, Any]:
+    return {
+        "shot": trade.shot,
+        "take": trade.take,
+        "score": rounded(trade.score, MEASURE_DECIMALS),
+        "best": rounded(trade.best, MEASURE_DECIMALS),
+        "keeps": list(trade.keeps),
+        "text": trade.text,
+    }
+
+
+def _cut(cut: CutFinding) -> dict[str, Any]:
+    found = cut.finding
+    return {
+        "rule": found.rule,
+        "severity": found.severity,
+        "shots": list(cut.shots),
+        "cut": list(cut.cut),
+        "degrees": rounded(found.degrees, MEASURE_DECIMALS),
+        "numbers": numbers(found.numbers),
+        "text": cut.text,
+    }
+
+
 def _beat(beat: Beat) -> dict[str, Any]:
     return {
         "char": beat.character,
@@ -87,11 +123,13 @@ def _take(shot: str, take: BuiltTake) -> dict[str, Any]:
         "rank": take.rank,
         "proposal": take.camera.index,
         "score": rounded(take.score, MEASURE_DECIMALS),
+        "logit": None if take.logit is None else rounded(take.logit, MEASURE_DECIMALS),
         "story": take.camera.story,
         "variant": take.variant,
         "movement": take.camera.movement,
         "scale": take.camera.scale,
         "angle": take.camera.angle,
+        "achieved": asdict(take.achieved),
         "frames": take.media.frames,
         "video": f"{base}.mp4",
         "poster": f"{base}.jpg",

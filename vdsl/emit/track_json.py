@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
@@ -41,6 +42,7 @@ def track_document(take: BuiltTake, shot: str, fps: tuple[int, int], rig: str) -
         "movement": camera.movement,
         "scale": camera.scale,
         "angle": camera.angle,
+        "achieved": asdict(take.achieved),
         "params": numbers(camera.params, 12),
         "camera": {
             "position": rows(track.position),

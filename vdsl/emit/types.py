@@ -11,7 +11,9 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from ..cinema.continuity import Finding
 from ..lang.ir import Shot, Storyboard, StoryLine, Transition
+from ..propose.promise import Achieved
 from ..propose.types import CameraProposal
 
 CUT = Transition("cut", 0.0)
@@ -42,7 +44,11 @@ class TakeMedia:
 
 @dataclass(frozen=True, eq=False)
 class BuiltTake:
-    """One kept proposal. rank: 1 is the best; score: the judge's, higher is better."""
+    """One kept proposal. rank: 1 is the best; score: the judge's, higher is better.
+
+    achieved: what its track turned out to be
+    logit: what the discriminator alone gave it, in log odds; None where it was not asked
+    """
 
     rank: int
     score: float
@@ -50,6 +56,8 @@ class BuiltTake:
     variant: str
     subject: Subject | None
     media: TakeMedia
+    achieved: Achieved
+    logit: float | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,13 +85,67 @@ class BuiltShot:
         return self.takes[0].media.frames if self.takes else 0
 
 
+@dataclass(frozen=True)
+class CutFinding:
+    """A rule that the cut between two shots breaks. shots: their ids; cut: their numbers, from 1."""
+
+    shots: tuple[str, str]
+    cut: tuple[int, int]
+    finding: Finding
+
+    @property
+    def text(self) -> str:
+        """``cut 3→4 crosses the line by 41° (anna–ben)``."""
+        return f"cut {self.cut[0]}→{self.cut[1]} {self.finding.words}"
+
+
+#: What a shot does that is not shown by its best take, by the rule that take would break.
+_KEEPS = {
+    "line": "keeps the line",
+    "direction": "keeps the screen direction",
+    "eyeline": "keeps the eyeline",
+    "jump": "avoids a jump cut",
+    "size": "avoids a leap in size",
+}
+
+
+@dataclass(frozen=True)
+class Trade:
+    """A take that is shown for the sake of the sequence, in place of the best one of its shot.
+
+    take: its place in the shot's ranking without the edit; score, best: its score, and the best one's
+    keeps: the rules the best one would break
+    """
+
+    shot: str
+    number: int
+    take: int
+    score: float
+    best: float
+    keeps: tuple[str, ...]
+
+    @property
+    def text(self) -> str:
+        """``shot 4: take 3 instead of 1 (score 0.81 instead of 0.86) keeps the line``."""
+        why = " and ".join(_KEEPS[rule] for rule in self.keeps)
+        scores = f"score {self.score:.2f} instead of {self.best:.2f}"
+        return f"shot {self.number}: take {self.take} instead of 1 ({scores}) {why}"
+
+
 @dataclass(frozen=True, eq=False)
 class Build:
-    """The whole film. judge: ``ranker`` or ``geometry``, by which the takes were put in order."""
+    """The whole film. judge: ``ranker`` or ``geometry``, by which the takes were put in order.
+
+    continuity: what the cuts between the first takes break, in order; edited: whether the first takes were
+    chosen for the sequence; trades: what was given up for it
+    """
 
     storyboard: Storyboard
     shots: tuple[BuiltShot, ...]
     judge: str = "ranker"
+    continuity: tuple[CutFinding, ...] = ()
+    edited: bool = False
+    trades: tuple[Trade, ...] = ()
 
     @property
     def shown(self) -> tuple[BuiltShot, ...]:

@@ -24,7 +24,8 @@ from ..emit.types import CUT, Build, BuiltShot, BuiltTake, RunReport, Stage, Sub
 from ..emit.video import write_take
 from ..lang import Report, Source, Span
 from ..lang.ir import Shot, Storyboard, StoryLine
-from ..propose.cameras import Filming
+from ..propose.cameras import Filming, subject_of
+from ..propose.promise import achieved
 from ..propose.state import SceneState, opening_state
 from ..propose.story import advance, propose
 from ..propose.types import CameraProposal, ProposalGrid, StoryProposal
@@ -176,10 +177,9 @@ def _film_all(
             with clock.spent("propose", shot.proposals):
                 grid = propose(act.line, shot, act.state, act.filming)
             scores = _scores(grid, act, shot, judge, camerawork, clock)
+            run = (storyboard, options, folder, start)
             takes = tuple(
-                _film(
-                    rank, i, scores, grid, act, shot, camerawork, (storyboard, options, folder, start), clock
-                )
+                _film(rank, i, scores, grid, act, shot, judge, camerawork, run, clock)
                 for rank, i in enumerate(choose_takes(grid.cameras, scores, shot.takes), start=1)
             )
             built = _built(grid, act.line, shot, storyboard, takes, first=not joined)
@@ -214,6 +214,7 @@ def _film(
     grid: ProposalGrid,
     act: Act,
     shot: Shot,
+    judge: Judge,
     camerawork: Camerawork,
     run: tuple[Storyboard, Options, Path, int],
     clock: StageClock,
@@ -229,7 +230,17 @@ def _film(
     with clock.spent("film", story.frames):
         frames = camerawork.take_frames(act.staged, shot.style, story, camera, storyboard.size)
         media: TakeMedia = write_take(folder, shot.id, rank, frames, story.frames, storyboard.fps, strip)
-    return BuiltTake(rank, float(scores[chosen]), camera, story.variant, _subject(grid, act, story), media)
+    score = float(scores[chosen])
+    return BuiltTake(
+        rank,
+        score,
+        camera,
+        story.variant,
+        _subject(grid, act, story),
+        media,
+        achieved(camera, subject_of(shot, story, act.filming), act.filming.rig),
+        judge.logit(camera, score),
+    )
 
 
 def _subject(grid: ProposalGrid, act: Act, story: StoryProposal) -> Subject | None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Protocol
 
@@ -27,6 +29,10 @@ class Judge(Protocol):
         """Scores [P] of P proposals; frames are uint8 [P, 8, 224, 224, 3] where the judge looks."""
         ...
 
+    def logit(self, camera: CameraProposal, score: float) -> float | None:
+        """What the pictures alone added to a score given before, in log odds; None where none were seen."""
+        ...
+
 
 class GeometryJudge:
     """Measured geometry alone (``--rank geometry``): nothing is drawn to choose."""
@@ -39,19 +45,26 @@ class GeometryJudge:
     ) -> NDArray[np.float64]:
         return np.array([geometry_score(c.measures) for c in cameras])
 
+    def logit(self, camera: CameraProposal, score: float) -> float | None:
+        return None
+
 
 #: How much a full point of the geometry score moves the odds of a take, in logits: as a prior, it breaks
 #: what the pictures leave nearly even. About the spread of the discriminator's own logits over a shot.
-_PRIOR = 10.0
+PRIOR = 10.0
 _PRIOR_MIDDLE = 0.75
+
+
+def prior(measures: Mapping[str, float]) -> float:
+    """What the geometry adds to the discriminator's log odds."""
+    return PRIOR * (geometry_score(measures) - _PRIOR_MIDDLE)
 
 
 class DiscriminatorJudge:
     """The shot ranking discriminator (p_b of the paper's section 3.3), with measured geometry as prior.
 
-    The score is the probability whose log odds are the discriminator's plus ``_PRIOR`` times how far the
-    geometry score is above the middle. Raises :class:`ranker.RankerError` if the weights are missing or
-    unreadable.
+    The score is the probability whose log odds are the discriminator's plus :func:`prior`.
+    Raises :class:`ranker.RankerError` if the weights are missing or unreadable.
     """
 
     name = "ranker"
@@ -70,5 +83,9 @@ class DiscriminatorJudge:
             raise ValueError("the discriminator judges by frames")
         # From the logit: p_b itself runs out of digits near 1.
         logit = self._ranker.score(frames).margin.astype(np.float64)
-        prior = np.array([geometry_score(c.measures) for c in cameras]) - _PRIOR_MIDDLE
-        return np.asarray(1.0 / (1.0 + np.exp(-(logit + _PRIOR * prior))))
+        priors = np.array([prior(c.measures) for c in cameras])
+        return np.asarray(1.0 / (1.0 + np.exp(-(logit + priors))))
+
+    def logit(self, camera: CameraProposal, score: float) -> float | None:
+        score = min(max(score, 1e-15), 1.0 - 1e-15)
+        return math.log(score / (1.0 - score)) - prior(camera.measures)

@@ -1,0 +1,62 @@
+"""Measures in words: that they add up, and that what is said of two takes is so."""
+
+from __future__ import annotations
+
+import pytest
+
+from vdsl.cinema.measures import MEASURES
+from vdsl.cinema.score import WEIGHTS, geometry_score
+from vdsl.cinema.telling import NOTES, advantages, compared, faults, is_good, number, penalties, terms
+
+BEST = dict.fromkeys(MEASURES, 0.0) | {
+    "visibility": 1.0, "head_visible": 1.0, "in_frame": 1.0, "headroom": 0.1, "lead_room": 0.2,
+    "interest": 1.0, "face": 0.9, "clearance": 1.0,
+}  # fmt: skip
+
+
+def test_every_measure_has_a_note_and_no_other() -> None:
+    assert set(NOTES) == set(MEASURES)
+    assert all(is_good(name, value) for name, value in BEST.items())
+
+
+def test_points_and_penalties_make_the_score() -> None:
+    take = BEST | {"foreground": 0.3, "backdrop_gap": 0.1, "jerk": 9.0, "thirds_error": 0.2}
+    total = sum(t.points for t in terms(take))
+    for factor in penalties(take).values():
+        total *= factor
+    assert total == pytest.approx(geometry_score(take))
+    assert sum(t.weight for t in terms(take)) == pytest.approx(sum(WEIGHTS.values())) == pytest.approx(1.0)
+
+
+def test_differences_of_two_takes_add_up_nearly_to_that_of_their_scores() -> None:
+    other = BEST | {"lead_room": -0.2, "foreground": 0.1, "angular_speed": 40.0}
+    gains = advantages(BEST, other)
+    assert sum(gains.values()) == pytest.approx(geometry_score(BEST) - geometry_score(other), rel=0.05)
+    assert set(list(gains)[:3]) == {"lead_room", "foreground", "steadiness"}
+    judged = advantages(BEST, other, (1.0, 3.5), 10.0)
+    assert judged["logit"] == -2.5
+    assert judged["foreground"] == pytest.approx(10.0 * gains["foreground"])
+
+
+def test_what_is_said_of_two_takes_quotes_both() -> None:
+    other = BEST | {"lead_room": -0.09, "speed": 2.0}
+    assert (
+        compared("lead_room", BEST, other, True, "take 2")
+        == "more lead room than take 2 (0.20 against −0.09)"
+    )
+    assert compared("steadiness", other, BEST, False) == "less steady (2.0 m/s against 0.0 m/s)"
+    assert compared("size", BEST, other, True) == "the size holds better"  # nothing to quote: both alike
+
+
+def test_faults_are_told_but_not_those_that_are_meant() -> None:
+    assert faults(BEST, "static") == ()
+    cut = BEST | {"feet_cut": 0.1, "visibility": 0.61}
+    assert faults(cut, "follow") == ("hides part of the subject (61 % seen)", "cuts the feet")
+    assert faults(cut, "push") == ("hides part of the subject (61 % seen)",)
+
+
+def test_numbers_carry_their_units() -> None:
+    assert number("visibility", 0.314) == "31 %"
+    assert number("angular_speed", 12.3) == "12.3°/s"
+    assert number("lead_room", -0.2) == "−0.20"
+    assert number("clearance", 0.5) == "0.5 m"

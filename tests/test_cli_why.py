@@ -1,0 +1,138 @@
+"""``vdsc why`` as a writer meets it: from a build, from memory, and what is wrong with what was asked."""
+
+from __future__ import annotations
+
+import json
+import re
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner, Result
+
+import vdsl
+from vdsl.cli import app
+
+STORY = """\
+storyboard "Why"
+size 128x72
+proposals 10
+takes 3
+
+character anna = woman
+
+scene kitchen = apartment.kitchen
+anna at door facing window
+
+(anna wave)          / (static|push full eye-level)
+(anna walk counter)  / (follow medium eye-level)
+"""
+DOCS = Path(__file__).parents[1] / "docs" / "output.md"
+
+
+def vdsc(*arguments: object) -> Result:
+    return CliRunner().invoke(app, [str(a) for a in arguments])
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    path = tmp_path_factory.mktemp("why")
+    (path / "story.vds").write_text(STORY)
+    vdsl.compile(path / "story.vds", path / "out", rank="geometry", device="cpu")
+    return path
+
+
+def explained(*arguments: object) -> dict:  # type: ignore[type-arg]
+    result = vdsc("why", *arguments, "--json")
+    assert result.exit_code == 0, result.output
+    return json.loads(result.stdout)  # type: ignore[no-any-return]
+
+
+def test_a_build_is_explained_in_words_and_numbers(folder: Path) -> None:
+    result = vdsc("why", folder / "story.vds", "1", "-b", folder / "out")
+    assert result.exit_code == 0, result.output
+    assert "asked: static|push full eye-level; 10 proposals judged" in result.stdout
+    assert re.search(r"^take 1 \(0\.\d+\) ranks first: ", result.stdout, re.MULTILINE)
+    assert re.search(r"^take 3 \(0\.\d+\) ranks third: ", result.stdout, re.MULTILINE)
+    assert re.search(r"scale +full, came out as full", result.stdout)
+    assert "rejected before judging: " in result.stdout
+    assert "changed since" not in result.stdout
+
+
+def test_the_numbers_are_those_of_the_build(folder: Path) -> None:
+    told = explained(folder / "story.vds", "walk", "-b", folder / "out")
+    built = json.loads((folder / "out" / "storyboard.json").read_text())["shots"][1]
+    assert told["shot"] == built["id"]
+    assert told["origin"] == "build"
+    assert told["rejected"] == built["rejected"]
+    assert [t["score"] for t in told["takes"]] == [t["score"] for t in built["takes"]]
+    for take in told["takes"]:
+        total = sum(t["points"] for t in take["terms"])
+        for factor in take["penalties"].values():
+            total *= factor
+        assert total == pytest.approx(take["geometry"], abs=1e-4)
+        assert take["geometry"] == pytest.approx(take["score"], abs=1e-4)
+        assert take["logit"] is None
+        assert all(take["kept"].values()), take["achieved"]
+        assert {a["rank"] for a in take["against"]} == {1, 2, 3} - {take["rank"]}
+
+
+def test_memory_says_what_the_build_says(folder: Path) -> None:
+    fresh = explained(folder / "story.vds", "walk", "--fresh")
+    kept = explained(folder / "story.vds", "walk", "-b", folder / "out")
+    assert fresh["origin"] == "memory"
+    assert [t["sentence"] for t in fresh["takes"]] == [t["sentence"] for t in kept["takes"]]
+    assert fresh["rejected"] == kept["rejected"]
+
+
+def test_one_take_and_a_changed_script(folder: Path, tmp_path: Path) -> None:
+    changed = tmp_path / "story.vds"
+    changed.write_text(STORY + "(anna wave)\n")
+    result = vdsc("why", changed, "walk", 2, "-b", folder / "out")
+    assert result.exit_code == 0
+    assert "the script has changed since this build" in result.stdout
+    assert "take 2 (" in result.stdout
+    assert not re.search(r"^take 1", result.stdout, re.MULTILINE)
+
+
+@pytest.mark.parametrize(
+    ("shot", "said"),
+    [
+        ("9", "there is no shot 9; the storyboard has 2 shots"),
+        ("anna", "is a part of several shots: kitchen-anna-wave and kitchen-anna-walk-counter"),
+        ("kitchen-anna-wav3", "did you mean `kitchen-anna-wave`?"),
+        ("zzz", "shots are kitchen-anna-wave and kitchen-anna-walk-counter"),
+    ],
+)
+def test_unclear_shots_are_told(folder: Path, shot: str, said: str) -> None:
+    result = vdsc("why", folder / "story.vds", shot)
+    assert result.exit_code == 2
+    assert said in result.output
+
+
+def test_takes_and_builds_that_are_not_there_are_told(folder: Path, tmp_path: Path) -> None:
+    story = folder / "story.vds"
+    result = vdsc("why", story, "1", "4", "-b", folder / "out")
+    assert (result.exit_code, "has 3 takes" in result.output) == (2, True)
+    result = vdsc("why", story, "1", "-b", tmp_path)
+    assert (result.exit_code, "there is no build at" in result.output) == (2, True)
+    (tmp_path / "storyboard.json").write_text('{"schema": "vds.storyboard/1"}')
+    result = vdsc("why", story, "1", "-b", tmp_path)
+    assert (result.exit_code, "is damaged" in result.output) == (2, True)
+    assert vdsc("why", story, "1", "--fresh", "-b", tmp_path).exit_code == 2
+    assert vdsc("why", tmp_path / "none.vds", "1").exit_code == 2
+
+
+def test_documented_fields_are_the_fields(folder: Path) -> None:
+    def fields(value: object, prefix: str = "") -> set[str]:
+        out: set[str] = set()
+        if isinstance(value, dict):
+            for key, inner in value.items():
+                free = key in ("measures", "rejected", "penalties", "gains")
+                out |= {prefix + key} | (set() if free else fields(inner, f"{prefix}{key}."))
+        elif isinstance(value, list) and value and isinstance(value[0], dict):
+            out |= fields(value[0], prefix[:-1] + "[].")
+        return out
+
+    section = DOCS.read_text("utf-8").split("## `vds.why/1`", 1)[1].split("\n## ", 1)[0]
+    documented = set(re.findall(r"^\| `([^`]+)` \|", section, re.MULTILINE))
+    assert documented == fields(explained(folder / "story.vds", "1", "-b", folder / "out"))

@@ -1,0 +1,43 @@
+"""What a take turned out to be, held against the words of its line."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from ..cinema.classify import achieved_angle, achieved_angles, achieved_movement, achieved_size
+from ..cinema.moves import family
+from ..cinema.subject import Subject
+from .types import CameraProposal
+
+
+@dataclass(frozen=True)
+class Achieved:
+    """Size, angle and movement read off a take's track, whatever was asked; the movement is a family."""
+
+    movement: str
+    scale: str
+    angle: str
+
+    def kept(self, camera: CameraProposal) -> dict[str, bool]:
+        """Which of the take's own words came out as they were meant.
+
+        A camera that the floor held up looks up less than a low angle does, and counts as one.
+        """
+        return {
+            "movement": family(camera.movement) == self.movement,
+            "scale": camera.scale == self.scale,
+            "angle": camera.angle == self.angle or "lifted" in camera.params,
+        }
+
+
+def achieved(camera: CameraProposal, subject: Subject, rig: str) -> Achieved:
+    """Read a take: its size and angle at the frame the framing is of, its movement over all of it."""
+    key = subject.frames - 1 if camera.params.get("reference") == "end" else 0
+    elevation = math.radians(camera.measures["elevation"])
+    angles = achieved_angles(elevation, camera.measures["height"], subject, key)
+    return Achieved(
+        achieved_movement(camera.track, subject.position),
+        achieved_size(camera.track, subject, key, rig == "paper"),
+        camera.angle if camera.angle in angles else achieved_angle(elevation),
+    )

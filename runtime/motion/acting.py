@@ -18,7 +18,7 @@ from .carriage import Low, Style
 from .channels import Channels
 from .contacts import Contacts, HandTracks, Layer
 from .curves import below, delayed, plateau, ramp, smooth, wander
-from .face import GazePull, Look, blinks, eye_angles, felt, look, mimic, speech
+from .face import GazePull, Look, beyond_eyes, blinks, eye_angles, felt, look, mimic, speech
 from .feet import ankle_positions
 from .figure import ArmPose, Figure, HandGoals
 from .gait import level_thigh, sit_clearance
@@ -164,7 +164,7 @@ class Performer:
             (up, c.pair("shoulder", "forward") + self.feeling["rounded"] + style.forward),
         )  # fmt: skip
         talk = self.speech
-        fig.head(
+        self.head = (
             self.look.head_turn - 0.5 * (spine_twist - self.look.chest_twist - twist) + self.turning
             + c["head.turn"] - 0.8 * pelvis_turn + style.loll[0],
             self.look.head_nod - np.clip(bowed, -0.4, 0.55) + self.nodding + c["head.nod"] + talk.nod
@@ -172,7 +172,20 @@ class Performer:
             self.tilting + c["head.tilt"] + talk.tilt - 0.5 * spine_side + self.feeling["tilt"]
             + style.loll[1],
         )  # fmt: skip
+        fig.head(*self.head)
         self._set_legs(ankle, toes, bind)
+
+    def attend(self) -> None:
+        """Turns the head to what the eyes alone cannot get to, now that the torso is posed."""
+        if not self.look.fixed.any():
+            return
+        body = rot_zy(self.yaw, self.low.looks)
+        more = beyond_eyes(self.look, body, *self._gaze_from(), self.fps)
+        turn, nod = (
+            np.clip(x + y, np.minimum(x, -limit), np.maximum(x, limit))
+            for x, y, limit in zip(self.head, more, (1.35, 1.0), strict=False)
+        )
+        self.figure.head(turn, nod, self.head[2])
 
     def _raise(self) -> Array:
         """Clavicles go up with a lifted arm [2, T]."""

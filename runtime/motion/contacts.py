@@ -342,16 +342,13 @@ class Contacts:
 
 def _slid(grip: Array, along: Array, figure: Figure, k: int) -> Array:
     """The place ``along`` [T, 3] from the other hand's ``grip`` [T, 3] on what that holds; where the arm is
-    too short for it, as far from the other hand as it is long enough."""
-    shoulder = figure.shoulders()[k]
-    limit = 0.97 * figure.arm_length
-    low, high = np.zeros(len(along)), np.ones(len(along))
-    share = high
-    for _ in range(6):
-        short = norm(grip + share[:, None] * along - shoulder) > limit
-        high, low = np.where(short, share, high), np.where(short, low, share)
-        share = 0.5 * (low + high)
-    return np.asarray(grip + np.where(low > 0.98, 1.0, low)[:, None] * along)
+    too short for it, the farthest along that it is long enough for, or else the nearest."""
+    limit = 0.93 * figure.arm_length
+    off = grip - figure.shoulders()[k]
+    a, b = dot(along, along), dot(off, along)
+    room = np.maximum(b * b - a * (dot(off, off) - limit**2), 0.0)
+    share = np.clip((np.sqrt(room) - b) / np.maximum(a, 1e-9), 0.0, 1.0)
+    return np.asarray(grip + share[:, None] * along)
 
 
 def _at_arms_length(at: Array, figure: Figure, k: int) -> Array:

@@ -76,7 +76,22 @@ def look(pulls: list[GazePull], frames: int, fps: float) -> Look:
 
 
 def eye_angles(look: Look, body: Array, head: Array, eye: Array) -> tuple[Array, Array]:
-    """Turn and down of the eyes in the head [T], within their limits.
+    """Turn and down of the eyes in the head [T], within their limits; arguments as of :func:`eye_way`."""
+    turn, down = eye_way(look, body, head, eye)
+    return _limited(turn, EYE_TURN), _limited(down, EYE_DOWN)
+
+
+def beyond_eyes(look: Look, body: Array, head: Array, eye: Array, fps: float) -> tuple[Array, Array]:
+    """Turn and down [T] that are left for the head to do, of a look the eyes cannot follow from it."""
+    out = []
+    for angle, limit in zip(eye_way(look, body, head, eye), (EYE_TURN, EYE_DOWN), strict=True):
+        over = np.sign(angle) * np.maximum(np.abs(angle) - 0.7 * limit, 0.0)
+        out.append(smooth(np.clip(over, -0.5, 0.5) * look.fixed, 0.08 * fps))
+    return out[0], out[1]
+
+
+def eye_way(look: Look, body: Array, head: Array, eye: Array) -> tuple[Array, Array]:
+    """Turn and down in the head [T] of what is looked at.
 
     body, head: rotations [T, 3, 3] of what the look is relative to and of the head
     eye: [T, 3] between the eyes
@@ -87,8 +102,7 @@ def eye_angles(look: Look, body: Array, head: Array, eye: Array) -> tuple[Array,
     fixed = unit(turned(np.swapaxes(head, -1, -2), look.point - eye))
     way = free + look.fixed[:, None] * (fixed - free)
     turn = np.arctan2(way[:, 1], way[:, 0])
-    down = np.arctan2(-way[:, 2], np.hypot(way[:, 0], way[:, 1]))
-    return _limited(turn, EYE_TURN), _limited(down, EYE_DOWN)
+    return turn, np.arctan2(-way[:, 2], np.hypot(way[:, 0], way[:, 1]))
 
 
 def _limited(x: Array, limit: float) -> Array:

@@ -252,6 +252,12 @@ class Figure:
             if turn >= 2 and (norm(limb.end - wished) * goals.weight).max() < 0.004:
                 break
             goal_wrist = goal_wrist + (1.0 if turn < 3 else 0.5) * (wished - goal_wrist)  # may go to and fro
+        else:  # the hand as it lies in the end is taken there
+            way = (goals.position - turned(hand, offset)) - wrist_fk
+            target = wrist_fk + w * way + (0.7 * w * (1 - w) * norm(way)[..., None]) * arc
+            limb = two_bone(root, target, self._upper, self._lower, pole, fold=2.8)
+            fore = bone_rotation(limb.end - limb.middle, limb.hinge, self._forearm_frames)
+            relative = np.swapaxes(fore, -1, -2) @ hand
         swivel = dot(rotation_vector_twist(relative, axis), axis)
         upper = bone_rotation(limb.middle - root, limb.hinge, self._upperarm_frames)
         self._set(_UPPERARMS, root, upper)

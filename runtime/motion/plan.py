@@ -165,6 +165,7 @@ def plan_task(
         plan.windows = [plan.kept]
     if task.fetch is not None:
         _fetch(plan, task, props, rng)
+        clip_start = route.now
     going = _going(plan, task)
     _go(plan, task, going, rng)
     _sit_or_stand(plan, task, going, rng)
@@ -176,7 +177,10 @@ def plan_task(
         route.settle(clip.posture, task.speed, clip.posture_time / task.speed)
     if clip.capture is not None:
         _rise(route, task)
+    holds = len(plan.held)
     _take_needed(plan, task, props)
+    if len(plan.held) > holds:  # what plays on the way there needs it in the hand
+        clip_start = route.now
     duration = variant.duration / (task.speed * plan.manner.tempo)
     if task.duration is not None:
         left = task.duration - route.now

@@ -61,6 +61,7 @@ class Scene:
         order = self._arms_in_order()
         for name, performer in self.performers.items():
             performer.reach_body(self.tracks[name])
+            performer.attend()
         for name, performer in order:
             palms[name] = performer.arms(Contacts(self.tracks[name]))
             performer.face()

@@ -76,7 +76,7 @@ def _cuirass(f: Figure) -> Piece:
     solid = _breast(f)
     low = f.level(-0.17)
     shoulder = f.joint("upperarm_l")
-    patch = surface_of(f, solid, low - 0.04 * h, f.level(1.2), False, 620)
+    patch = surface_of(f, solid, low - 0.04 * h, f.level(1.2), False, 620, 0.0088)
 
     def armhole(p: Points) -> Values:
         inner = 0.92 * shoulder[1] + 0.35 * np.clip(f.level(0.80) - p[:, 2], -0.02 * h, 0.2 * h)

@@ -41,7 +41,7 @@ from .weights import (
 )
 
 #: Raised with every change of shape, so that old cache files are not read.
-VERSION = 16
+VERSION = 20
 
 
 @dataclass(frozen=True, eq=False)

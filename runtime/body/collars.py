@@ -62,14 +62,14 @@ def _clear(solid: Field, grid: Grid, lifts: Values) -> Grid:
 
 
 def stand_up(
-    f: Figure, colour: Colour, high: float = 0.030, gap: float = 0.05, part: str = "trim"
+    f: Figure, colour: Colour, high: float = 0.030, gap: float = 0.05, part: str = "trim", until: float = 1.0
 ) -> list[Piece]:
-    """A band standing around the neck, almost closed in front."""
+    """A band standing around the neck, almost closed in front; ``until``: share of the way to the nape."""
     h, r = f.p.height, neck_radius(f)
-    turn = np.linspace(gap, np.pi, 12)
+    turn = np.linspace(gap, until * np.pi, 12)
     low = (-0.052 + 0.016 * (0.5 - 0.5 * np.cos(turn))) * h
     rows = [
-        _ring(f, turn, 1.34 * r + 0.0 * turn, low),
+        _ring(f, turn, (1.27 + 0.07 * np.cos(turn)) * r, low),
         _ring(f, turn, 1.20 * r + 0.0 * turn, low + 0.55 * high * h),
         _ring(f, turn, 1.16 * r + 0.0 * turn, low + high * h + 0.008 * h),
     ]

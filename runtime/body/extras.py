@@ -297,6 +297,24 @@ def _backpack(f: Figure, solid: Field) -> list[Piece]:
     ]
 
 
+def _halved(grid: Points, rows: int) -> Points:
+    """A grid [R, C, 3] with another row between each two of its first ``rows``."""
+    head = np.stack([grid[: rows - 1], (grid[: rows - 1] + grid[1:rows]) / 2], 1)
+    return np.concatenate([head.reshape(-1, *grid.shape[1:]), grid[rows - 1 :]])
+
+
+def _kept_off(solid: Field, grid: Points, gap: Values) -> Points:
+    """Points [R, C, 3] moved out until they are ``gap`` [R, C] metres off a solid's surface."""
+    points = grid.reshape(-1, 3).copy()
+    middle = points[:, 1] < 1e-9
+    for _ in range(3):
+        slope = gradient(solid, points)
+        slope[middle, 1] = 0.0
+        slope /= np.maximum(np.linalg.norm(slope, axis=1, keepdims=True), 1e-9)
+        points += slope * np.clip(gap.reshape(-1) - solid(points), 0.0, 0.05)[:, None]
+    return points.reshape(grid.shape)
+
+
 def _cape(f: Figure, solid: Field) -> list[Piece]:
     """From the shoulders down the back to the calves."""
     h, colour = f.p.height, f.spec.accent_color
@@ -325,10 +343,12 @@ def _cape(f: Figure, solid: Field) -> list[Piece]:
         0.012 * h * np.cos(3.5 * np.pi * share) * np.clip((f.level(0.8) - up) / (0.4 * h), 0.0, 1.0)[:, None]
     )
     out[2:, :, 0] = np.clip(flow[2:], -0.20 * h, 0.0) + folds[2:]
-    low = out[0] + np.array([0.0, 0.0, 0.006 * h])
-    above = np.stack([out[0, :, 0], out[0, :, 1], np.full(len(share), f.level(1.0) + 0.14 * h)], 1)
+    above = np.stack(
+        [out[0, :, 0] + 0.026 * h * (1 - edge), out[0, :, 1], np.full(len(share), f.level(1.0) + 0.14 * h)], 1
+    )
     out[0] = cast(solid, above, (0.0, 0.0, -1.0), 0.26 * h) + np.array([0.0, 0.0, 0.008 * h])
-    out[0, 0] = low[0]
+    out = _halved(out, 3)
+    out = _kept_off(solid, out, (0.011 + 0.016 * np.clip((f.level(0.5) - out[..., 2]) / (0.2 * h), 0, 1)) * h)
     under = out + np.array([0.008 * h, 0.0, 0.0])
     clasp = strand(np.concatenate([[out[0, -1]], _around_neck(f, 1.55, 0.05, 7)[:4][::-1]]), 0.009 * h, 5)
     return [

@@ -10,7 +10,7 @@ from .anatomy import LEG_FRAME, Figure, leg_loft, shoe, trunk
 from .armour import rings
 from .field import Field, Knot, Points, Values, loft, smooth_min, union
 from .outfit import above, both, skirt_tail, surface_of
-from .pieces import Piece, hemmed, parted, shade
+from .pieces import Piece, hemmed, parted, parted_all, shade
 from .sheets import ellipsoid_patch, on_chest, plate, strand
 from .spec import Colour
 from .surface import clip, polygonise, simplify
@@ -138,9 +138,8 @@ def _greaves(f: Figure, legs: list[Piece]) -> list[Piece]:
     knee = f.p.knee
     cloth = legs[0]
     low = parted(cloth, lambda p: p[:, 2] - knee + 0.02 * h, steel, "plate")
-    thigh = parted(
-        low[0], lambda p: np.maximum(p[:, 2] - knee - 0.17 * h, knee + 0.03 * h - p[:, 2]), steel, "plate"
-    )
+    band: list[Field] = [lambda p: p[:, 2] - knee - 0.17 * h, lambda p: knee + 0.03 * h - p[:, 2]]
+    thigh = parted_all(low[0], band, steel, "plate")
     cop = ellipsoid_patch(
         f.joint("shin_l") + np.array([0.020 * h, 0.0, 0.004 * h]), (0.030 * h, 0.038 * h, 0.042 * h), 9, 6
     )
@@ -207,7 +206,7 @@ def bare_legs(f: Figure) -> list[Piece]:
         return []
     h, solid = f.p.height, leg_loft(f)
     long = f.spec.top in FLOOR_LONG or f.spec.bottom == "long-skirt"
-    top_z = f.p.knee + (-0.06 if long else 0.10) * h
+    top_z = f.p.knee + (-0.06 if long else 0.065) * h
     low = boot_top(f) - 0.02 * h if f.spec.shoes == "boots" else 0.3 * f.p.ankle
     patch = polygonise(solid, (-0.1 * h, 0.0, low), (0.1 * h, 0.14 * h, top_z), 0.0065)
     colour = f.spec.skin if not long or f.spec.top == "gown" else shade(f.spec.shoes_color, 0.9)

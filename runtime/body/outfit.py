@@ -79,7 +79,7 @@ def _box(
 ) -> tuple[tuple[float, float, float], tuple[float, float, float]]:
     h = f.p.height
     y = 0.42 * h if arm else 0.26 * h
-    return (-0.24 * h, -0.03, low_z), (0.26 * h, y, high_z)
+    return (-0.27 * h, -0.03, low_z), (0.29 * h, y, high_z)
 
 
 def top_solid(f: Figure, grow: float, ease: float, sleeves: Field) -> Field:
@@ -97,11 +97,16 @@ def top_solid(f: Figure, grow: float, ease: float, sleeves: Field) -> Field:
     return field
 
 
-def surface_of(f: Figure, solid: Field, low_z: float, high_z: float, arm: bool, faces: int) -> Patch:
-    """The left half of a garment's surface between two heights, ``arm`` telling whether it has a sleeve."""
+def surface_of(
+    f: Figure, solid: Field, low_z: float, high_z: float, arm: bool, faces: int, step: float = 0.0120
+) -> Patch:
+    """The left half of a garment's surface between two heights, ``arm`` telling whether it has a sleeve.
+
+    step: of the grid it is found on, metres for somebody 1.7 m tall; less for what is fluted
+    """
     low, high = _box(f, low_z, high_z, arm)
     return half(
-        simplify(polygonise(solid, low, high, 0.0120 * f.p.height / 1.7), round(f.detail * faces), solid)
+        simplify(polygonise(solid, low, high, step * f.p.height / 1.7), round(f.detail * faces), solid)
     )
 
 

@@ -65,7 +65,7 @@ def robe(f: Figure) -> list[Piece]:
     cuff = along_arm(f, sleeve_length(f, 0.86), 0.09)
     sleeve = parted(rest[0], lambda p: -cuff(p), shade(f.spec.top_color, 0.84), "over")
     pieces = [hemmed(sleeve[0], 0.011 * h), *rest[1:], band, hemmed(sleeve[1], 0.011 * h)]
-    return [*pieces, *stand_up(f, f.spec.shirt_color, 0.022, part="shirt")]
+    return [*pieces, *stand_up(f, f.spec.shirt_color, 0.022, part="shirt", until=0.7)]
 
 
 def kimono(f: Figure) -> list[Piece]:

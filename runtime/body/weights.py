@@ -118,21 +118,23 @@ def tooth_weights(figure: Figure, points: Points) -> NDArray[np.float64]:
 
 
 def cape_weights(figure: Figure, points: Points) -> NDArray[np.float64]:
-    """What hangs from the shoulders down the back: with chest and hips, swinging a little with the thighs."""
-    z = points[:, 2]
+    """What hangs from the shoulders down the back: with chest and hips, below with the legs.
+
+    Over a skirt it goes as the skirt does, else with the middle of both legs: so it stays behind whoever
+    walks, is sat on by whoever sits and lies on the calves of whoever kneels.
+    """
+    z, h = points[:, 2], figure.p.height
     high = ramp(z, figure.level(0.55), figure.level(0.95))
     low = ramp(-z, -figure.level(0.45), -figure.level(0.0))
-    swing = 0.30 * ramp(-z, -figure.p.hip[1], -figure.p.knee)
-    left = 0.5 + 0.5 * np.clip(points[:, 1] / (0.12 * figure.p.height), -1.0, 1.0)
-    w = np.zeros((len(points), len(PALETTE)))
-    w[:, _COLUMN["chest"]] = (1 - low) * (0.4 + 0.6 * high)
-    w[:, _COLUMN["spine"]] = (1 - low) * 0.6 * (1 - high)
-    w[:, _COLUMN["hips"]] = low * (1 - swing)
-    w[:, _COLUMN["thigh_l"]], w[:, _COLUMN["thigh_r"]] = low * swing * left, low * swing * (1 - left)
-    clavicle = 0.5 * high * ramp(np.abs(points[:, 1]), 0.04 * figure.p.height, 0.10 * figure.p.height)
-    w[:, _COLUMN["clavicle_l"]] = np.where(points[:, 1] > 0, clavicle, 0.0) * w[:, _COLUMN["chest"]]
-    w[:, _COLUMN["clavicle_r"]] = np.where(points[:, 1] < 0, clavicle, 0.0) * w[:, _COLUMN["chest"]]
-    w[:, _COLUMN["chest"]] *= 1 - clavicle
+    skirted = figure.spec.top in ("dress", "gown", "robe", "kimono") or "skirt" in figure.spec.bottom
+    w = body_weights(figure, points, side_blend=0.042 if skirted else 0.25, arms=False) * low[:, None]
+    upper = 1.0 - low
+    clavicle = 0.5 * high * ramp(np.abs(points[:, 1]), 0.04 * h, 0.10 * h)
+    chest = upper * (0.4 + 0.6 * high)
+    w[:, _COLUMN["chest"]] += chest * (1 - clavicle)
+    w[:, _COLUMN["spine"]] += upper * 0.6 * (1 - high)
+    w[:, _COLUMN["clavicle_l"]] += np.where(points[:, 1] > 0, clavicle, 0.0) * chest
+    w[:, _COLUMN["clavicle_r"]] += np.where(points[:, 1] <= 0, clavicle, 0.0) * chest
     return w
 
 

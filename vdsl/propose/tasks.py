@@ -11,14 +11,15 @@ from numpy.typing import NDArray
 
 from runtime.body.skeleton import Skeleton
 from runtime.motion.types import ActionClip, Passage, Talk, TargetPoint, Task, Timeline
-from runtime.nav import Discs, nearest_free, obstacles, reachable
+from runtime.nav import Discs, nearest_free
 
 from ..lang.diagnostics import Report
 from ..lang.ir import Beat, Shot, Target
 from .cameras import find_object
+from .hindrance import report_no_seat, report_nothing_opens, report_unreachable
 from .opening import Way, part_point, part_to_move, stand_to_move, stands, ways_through
-from .places import ARM, Stop, approach, object_target, seat_of, seats, target_point
-from .state import PERSON_RADIUS, SceneState, floor_under
+from .places import ARM, Stop, approach, object_target, seat_of, target_point
+from .state import PERSON_RADIUS, SceneState
 
 _NEAR_ENOUGH = 1.25  # metres between people who can hand each other things or talk without moving
 _STANDS_THERE = 0.2  # metres from the place to stand within which nobody takes a step
@@ -81,7 +82,7 @@ def _errand(
     if clip.seat == "down":
         seat = seat_of(beat.target, state, beat.character)
         if seat is None:
-            _no_seat(beat, state, report)
+            report_no_seat(beat, state, report)
             return None
         target = TargetPoint(seat.position, seat.position, facing=seat.facing, seat=seat.position)
         if actor.posture == "sitting" and actor.seat and math.dist(actor.seat, seat.position) < 0.3:
@@ -105,7 +106,7 @@ def _errand(
     here = actor.position
     stop = approach(where, state, beat.character, here, taken)
     if stop is None:
-        _unreachable(beat, where, state, here, report)
+        report_unreachable(beat, where, state, here, report)
         return None
     if clip.seat != "down" and math.dist(stop.place, here) < _STANDS_THERE:
         turn = replace(_task(clip, target, second, shot), arrive_heading=stop.heading)
@@ -113,7 +114,7 @@ def _errand(
     people = state.people(but=beat.character) + taken
     found = ways_through(state.world, here, stop.place, ways, people)
     if not found:
-        _unreachable(beat, where, state, here, report)
+        report_unreachable(beat, where, state, here, report)
         return None
     task = replace(_task(clip, target, second, shot), arrive_heading=stop.heading)
     return _with_ways(task, found, stop)
@@ -146,8 +147,7 @@ def _moving(
     item = find_object(state.world, beat.target)
     part = None if item is None else part_to_move(item, state.world, openness, actor.position)
     if part is None:
-        report.warn("VDS242", beat.target.span, label=f"nothing of `{beat.target.written}` opens",
-                       help=_listing("what opens here: ", _openers(state)))  # fmt: skip
+        report_nothing_opens(beat.target, state, report)
         return Errand(_task(clip, target, None, shot), (), None)
     if stands(part, openness):
         label = f"`{beat.target.written}` is {'open' if openness > 0.5 else 'closed'} already"
@@ -157,23 +157,16 @@ def _moving(
     stop = stand_to_move(part, openness, state.world, people, here)
     stop = stop or approach(beat.target, state, beat.character, here, taken)
     if stop is None:
-        _unreachable(beat, beat.target, state, here, report)
+        report_unreachable(beat, beat.target, state, here, report)
         return None
     task = replace(task, arrive_heading=stop.heading)
     if math.dist(stop.place, here) < _STANDS_THERE:
         return Errand(task, (), stop)
     found = ways_through(state.world, here, stop.place, ways, people)
     if not found:
-        _unreachable(beat, beat.target, state, here, report)
+        report_unreachable(beat, beat.target, state, here, report)
         return None
     return _with_ways(task, found, stop)
-
-
-def _openers(state: SceneState) -> list[str]:
-    """Names of what can be opened in the scene's room, or all of the set."""
-    paths = [o.path[:-1] for o in state.world.objects if o.hinge is not None]
-    near = [p for p in paths if p[: len(state.room)] == state.room] or paths
-    return list(dict.fromkeys(p[-1] for p in near))
 
 
 def _task(
@@ -327,79 +320,6 @@ def speaking(clip: ActionClip) -> ActionClip:
         for v in clip.variants
     )
     return replace(clip, variants=variants)
-
-
-# --- what went wrong ------------------------------------------------------------------------
-
-
-def _no_seat(beat: Beat, state: SceneState, report: Report) -> None:
-    span = beat.target.span if beat.target is not None else beat.span
-    taken = beat.target is not None and bool(seats(beat.target, state.world))
-    report.error(
-        "VDS171",
-        span,
-        label="somebody sits here already" if taken else "nobody can sit here",
-        help=_listing("free seats: ", _free_seats(state, beat.character)),
-    )
-
-
-def _free_seats(state: SceneState, who: str) -> list[str]:
-    names = []
-    for item in state.world.objects:
-        target = object_target(item)
-        if any(s.name.startswith("seat") for s in item.spots) and seat_of(target, state, who) is not None:
-            names.append(item.path[-1])
-    return names
-
-
-def _listing(before: str, names: list[str]) -> str | None:
-    return before + ", ".join(f"`{n}`" for n in names[:6]) if names else None
-
-
-def _unreachable(
-    beat: Beat, target: Target, state: SceneState, here: tuple[float, float, float], report: Report
-) -> None:
-    """Says what stands in the way, and what can be reached."""
-    people = state.people(but=beat.character)
-    goal = target_point(target, state, here).position
-    blocking = obstacles(state.world, here, goal)
-    names = _blockers(state, blocking, target)
-    crowd = [
-        f"`{name}`"
-        for name, a in state.actors.items()
-        if name != beat.character and math.hypot(a.position[0] - goal[0], a.position[1] - goal[1]) < 0.7
-    ]
-    what = list(dict.fromkeys(names + crowd))
-    label = f"{beat.character} cannot get to `{target.written}`"
-    upstairs = abs(floor_under(state.world, goal) - here[2]) > 0.05
-    nothing = "no stairs lead there" if upstairs else "no floor leads there"
-    label += f": {', '.join(what[:6])} in the way" if what else f": {nothing}"
-    reach = []
-    for item in state.world.objects:
-        stand = next((s for s in item.spots if s.name.startswith("stand")), None)
-        elsewhere = stand is not None and item.path != target.path
-        if stand is not None and elsewhere and reachable(state.world, here, stand.position, people):
-            reach.append(item.path[-1])
-    report.error(
-        "VDS170",
-        target.span,
-        label=label,
-        help=_listing(f"{beat.character} can get to ", reach) or f"give {beat.character} room to walk",
-    )
-
-
-def _blockers(state: SceneState, blocking: list[int], target: Target) -> list[str]:
-    """Names of what stands in the way: parts by what they belong to, walls as such; not the target itself."""
-    names = []
-    for i in blocking:
-        item = state.world.objects[i] if i >= 0 else None
-        if item is not None and item.hinge is not None:
-            item = state.world.objects[item.hinge.owner]
-        if item is None or item.kind in ("room", "area"):
-            names.append("a wall")
-        elif item.path != target.path:
-            names.append(f"`{item.path[-1]}`")
-    return names
 
 
 def disc(stop: Stop) -> tuple[float, float, float, float]:

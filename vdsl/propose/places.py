@@ -129,6 +129,18 @@ def _object_point(item: WorldObject, state: SceneState, near: Point) -> TargetPo
     return TargetPoint(contact, gaze, facing=facing, seat=place, bed=bed)
 
 
+def on_top_of(target: Target | None, state: SceneState) -> Point | None:
+    """Where something is put that goes on or into a movable thing, None where the thing has no such place."""
+    item = find_object(state.world, target) if target is not None and target.kind == "object" else None
+    prop = state.props.get(item.id) if item is not None else None
+    top = item.spot("top") if item is not None else None
+    if prop is None or prop.hinge is not None or top is None or item is None:
+        return None
+    inside = np.linalg.inv(np.asarray(item.world_from_object, float)) @ np.array([*top.position, 1.0])
+    x, y, z = (float(v) for v in (prop.world_from_object @ inside)[:3])
+    return x, y, z
+
+
 def _best_stand(item: WorldObject, near: Point) -> Spot | None:
     stands = [s for s in item.spots if s.name.startswith("stand")]
     return min(

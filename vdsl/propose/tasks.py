@@ -18,7 +18,7 @@ from ..lang.ir import Beat, Shot, Target
 from .cameras import find_object
 from .hindrance import report_no_seat, report_nothing_opens, report_unreachable
 from .opening import Way, part_point, part_to_move, stand_to_move, stands, ways_through
-from .places import ARM, Stop, approach, object_target, seat_of, target_point
+from .places import ARM, Stop, approach, object_target, on_top_of, seat_of, target_point
 from .state import PERSON_RADIUS, SceneState
 
 _NEAR_ENOUGH = 1.25  # metres between people who can hand each other things or talk without moving
@@ -77,6 +77,8 @@ def _errand(
     actor = state.actors[beat.character]
     target = _point(beat.target, state, actor.position, skeletons)
     second = _point(beat.second, state, actor.position, skeletons)
+    if second is not None and _puts(clip):
+        second = replace(second, position=on_top_of(beat.second, state) or second.position)
     if clip.needs == "second" and second is None and not actor.held:
         beat, second = _something_to_pour(beat, target, state)
     if clip.seat == "down":
@@ -122,6 +124,11 @@ def _errand(
 
 def _with_ways(task: Task, found: list[Way], stop: Stop) -> Errand:
     return Errand(task, tuple(path for path, _ in found), stop, tuple(doors for _, doors in found))
+
+
+def _puts(clip: ActionClip) -> bool:
+    """Whether something is put down in it."""
+    return any(g.kind == "put" for v in clip.variants for g in v.timeline.grasps)
 
 
 def _driven(clip: ActionClip) -> float | None:

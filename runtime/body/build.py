@@ -41,7 +41,7 @@ from .weights import (
 )
 
 #: Raised with every change of shape, so that old cache files are not read.
-VERSION = 20
+VERSION = 21
 
 
 @dataclass(frozen=True, eq=False)

@@ -169,7 +169,7 @@ def _half_weights(
     h = f.p.height
     on_leg = sum(legs.values()) * (1.0 - share)
     side = 0.5 + 0.5 * ramp(p[:, 1], 0.0, side_blend * h)
-    if side_blend < 0.05:  # below the crotch every leg is its own
+    if side_blend < 0.03:  # below the crotch every leg is its own
         side = np.maximum(side, ramp(f.p.hip[1] - p[:, 2], 0.05 * h, 0.10 * h))
     for name, value in torso.items():
         w[:, _COLUMN[name]] += value * (1.0 - on_leg) * (1.0 - share)

@@ -25,6 +25,7 @@ SETS = tuple(CATALOG.names("set"))
 MOST_TRIANGLES = 36_000
 #: How far a thing may hang over, or sink into, what it lies on, metres.
 FLOATS, SINKS = 0.012, 0.02
+STRUCTURE = ("room", "area", "wall", "part", "door", "window", "doorway", "platform", "stairs")
 #: Share of a solid that may lie within a wall, or within a solid of another prop.
 IN_WALL, IN_OTHER = 0.15, 0.4
 
@@ -149,6 +150,23 @@ def test_nothing_stands_in_something_else(name: str) -> None:
             if share > (IN_WALL if structure else IN_OTHER):
                 wrong.append((own, "wall" if structure else other, round(share, 2)))
     assert wrong == []
+
+
+@pytest.mark.parametrize("name", SETS)
+def test_what_a_camera_sees_but_cannot_bump_into_goes_with_its_wall(name: str) -> None:
+    """A column without a solid that stays when its wall goes would fill the picture from behind it."""
+    built = world(name)
+    solid = set(built.solids.object.tolist())
+    staying = []
+    for item in built.objects:
+        faces = built.mesh_object == item.id
+        wide, deep, tall = (b - a for a, b in zip(item.low, item.high, strict=True))
+        large = tall > 0.5 and max(wide, deep) > 0.35 and item.low[2] < 1.6
+        if item.kind in STRUCTURE or item.id in solid or not (large and faces.any()):
+            continue
+        if (built.mesh_wall[faces] < 0).all():
+            staying.append(item.path)
+    assert staying == []
 
 
 @pytest.mark.parametrize("name", SETS)

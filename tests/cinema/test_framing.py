@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from filmset import shot, skeleton, standing, still_story, story, walking_story, world
 
-from vdsl.cinema.classify import achieved_angle, achieved_movement, achieved_size
+from vdsl.cinema.classify import achieved_angle, achieved_angles, achieved_movement, achieved_size
+from vdsl.cinema.framing import stretch
 from vdsl.cinema.moves import FLOOR_CLEARANCE
 from vdsl.cinema.sizes import SIZES
 from vdsl.cinema.subject import Subject, person
@@ -26,7 +29,7 @@ def filmed(acted: StoryProposal, height: float, **said: object) -> tuple[CameraP
     return propose_cameras(shot(**said), [acted], filming).cameras  # type: ignore[arg-type]
 
 
-@pytest.mark.parametrize("scale", ["close-up", "medium", "full", "wide"])
+@pytest.mark.parametrize("scale", SIZES)
 @pytest.mark.parametrize("angle", ANGLES)
 def test_landmarks_sit_on_the_frame_s_lines(scale: str, angle: str) -> None:
     rng = np.random.default_rng(len(scale) + len(angle))
@@ -101,7 +104,7 @@ def test_pedestals_rise_and_sink() -> None:
             assert np.ptp(c.track.position[:, :2], axis=0).max() < 1e-9
 
 
-@pytest.mark.parametrize("scale", ["close-up", "medium", "full", "wide"])
+@pytest.mark.parametrize("scale", SIZES)
 def test_achieved_size_and_angle_are_what_was_asked(scale: str) -> None:
     acted = still_story(skeleton())
     subject = subject_of(acted, 1.7)
@@ -110,6 +113,83 @@ def test_achieved_size_and_angle_are_what_was_asked(scale: str) -> None:
             assert achieved_size(c.track, subject, 0) == scale
             if "lifted" not in c.params:
                 assert achieved_angle(np.radians(c.measures["elevation"])) == angle
+                assert angle in achieved_angles(
+                    np.radians(c.measures["elevation"]), c.measures["height"], subject, 0
+                )
+
+
+@pytest.mark.parametrize("roll", [-0.5, 0.15, 0.4])
+def test_landmarks_sit_on_the_lines_of_a_leaning_picture(roll: float) -> None:
+    acted = still_story(skeleton())
+    marks = subject_of(acted, 1.7).landmarks
+    for scale in ("close-up", "cowboy", "full"):
+        size = SIZES[scale]
+        for c in filmed(acted, 1.7, scale=scale, roll=roll):
+            axes = camera_axes(c.track.rotation[0])
+            points = np.stack([marks[size.upper][0], marks[size.lower][0], marks["eyes"][0]])
+            xy, _ = project(points, c.track.position[0], axes, c.track.focal[0], c.track.sensor)
+            assert xy[0, 1] == pytest.approx(size.top, abs=0.01)
+            assert xy[1, 1] == pytest.approx(size.bottom, abs=0.01)
+            assert 0.1 < xy[2, 0] < 0.9
+            assert c.track.rotation[0, 0] == roll
+
+
+def laid(acted: StoryProposal, height: float) -> StoryProposal:
+    """The same figure on its back, head towards −x, half a metre up."""
+    p = acted.performances["anna"]
+    turn = np.array([[0.0, 0.0, -1.0], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0]])
+    joints = p.world_from_joint.copy()
+    joints[..., :3, :] = turn @ joints[..., :3, :]
+    joints[..., 2, 3] += 0.5
+    return story({"anna": replace(p, world_from_joint=joints)})
+
+
+@pytest.mark.parametrize("scale", ["extreme-close-up", "close-up", "medium", "full", "wide"])
+@pytest.mark.parametrize("angle", ["eye-level", "high-angle", "overhead"])
+def test_one_who_lies_is_as_large_as_one_who_stands(scale: str, angle: str) -> None:
+    acted = laid(still_story(skeleton()), 1.7)
+    subject = subject_of(acted, 1.7)
+    size = SIZES[scale]
+    cameras = filmed(acted, 1.7, scale=scale, angle=angle)
+    assert len(cameras) == 40
+    for c in cameras:
+        axes = camera_axes(c.track.rotation[0])
+        ends = (subject.landmarks[size.upper][0], subject.landmarks[size.lower][0])
+        filled = stretch(*ends, c.track.position[0], axes, c.track.focal[0], c.track.sensor)
+        assert float(filled) == pytest.approx(size.share, rel=0.01)
+        assert achieved_size(c.track, subject, 0) == scale
+
+
+def test_overhead_looks_straight_down_and_a_worm_lies_on_the_ground() -> None:
+    for scale in ("medium", "full"):
+        for c in filmed(still_story(skeleton()), 1.7, scale=scale, angle="overhead"):
+            assert c.measures["elevation"] >= 80.0
+        for c in filmed(still_story(skeleton()), 1.7, scale=scale, angle="worms-eye"):
+            assert c.measures["elevation"] < -35.0 or c.measures["height"] < 0.5
+
+
+@pytest.mark.parametrize(
+    ("angle", "share", "scale"),
+    [
+        ("shoulder-level", 0.80, "medium"),
+        ("hip-level", 0.50, "full"),
+        ("knee-level", 0.27, "full"),
+        ("ground-level", None, "wide"),
+    ],
+)
+def test_levels_put_the_lens_at_their_height(angle: str, share: float | None, scale: str) -> None:
+    for height in (1.2, 1.9):
+        acted = still_story(skeleton(height))
+        cameras = filmed(acted, height, scale=scale, angle=angle)
+        assert cameras
+        size, marks = SIZES[scale], subject_of(acted, height).landmarks
+        for c in cameras:
+            wanted = 0.2 if share is None else share * height
+            assert c.track.position[0, 2] == pytest.approx(wanted, abs=0.06)
+            axes = camera_axes(c.track.rotation[0])
+            points = np.stack([marks[size.upper][0], marks[size.lower][0]])
+            xy, _ = project(points, c.track.position[0], axes, c.track.focal[0], c.track.sensor)
+            assert xy[:, 1] == pytest.approx((size.top, size.bottom), abs=0.01)
 
 
 def test_low_cameras_say_that_they_were_lifted() -> None:

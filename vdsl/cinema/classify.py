@@ -5,40 +5,54 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from .angles import LOOKS_DOWN, LOOKS_UP
-from .framing import Array
-from .sizes import PAPER_RADIUS, size_of
+from .angles import CINEMA_THETA, lens_height, shows
+from .framing import Array, stretch
+from .sizes import PAPER_RADIUS, SIZES, size_of
 from .subject import Subject
 from .track import CameraTrack, camera_axes, project
-
-_SCALES = ("close-up", "medium", "full", "wide")
 
 
 def achieved_size(track: CameraTrack, subject: Subject, frame: int, paper: bool = False) -> str:
     """The scale whose framing of the posed body comes closest at a frame; unbatched track."""
     axes = camera_axes(track.rotation[frame])
-    names = list(subject.landmarks)
-    points = np.stack([subject.landmarks[n][frame] for n in names])
-    xy, depth = project(points, track.position[frame], axes, np.asarray(track.focal[frame]), track.sensor)
-    view = max(float(depth[names.index("pocket")]), 0.01) * track.sensor[1] / float(track.focal[frame])
-    best, least = _SCALES[0], np.inf
-    for scale in _SCALES:
+    eye, focal = track.position[frame], np.asarray(track.focal[frame])
+    _, depth = project(subject.landmarks["pocket"][frame][None], eye, axes, focal, track.sensor)
+    view = max(float(depth[0]), 0.01) * track.sensor[1] / float(focal)
+    best, least = "medium", np.inf
+    for scale in PAPER_RADIUS if paper else SIZES:
         if paper:
             error = abs(np.log(view / (PAPER_RADIUS[scale] * subject.height)))
         else:
             size = size_of(subject.kind, scale)
-            stretch = xy[names.index(size.lower), 1] - xy[names.index(size.upper), 1]
-            error = abs(np.log(max(float(stretch), 1e-4) / size.share))
+            upper, lower = subject.landmarks[size.upper][frame], subject.landmarks[size.lower][frame]
+            filled = float(stretch(upper, lower, eye, axes, focal, track.sensor))
+            error = abs(np.log(max(filled, 1e-4) / size.share))
         if error < least:
             best, least = scale, error
     return best
 
 
+def achieved_angles(elevation: float, height: float, subject: Subject, frame: int) -> tuple[str, ...]:
+    """All that an angle may be called: a low one is high over nothing, but may be at the knees' level too.
+
+    elevation: radians the camera looks down on its aim; height: metres of the camera over the floor
+    """
+    found = []
+    for angle in CINEMA_THETA:
+        level = lens_height(angle, subject.landmarks, subject.floor, subject.kind)
+        over = None if level is None else float(np.broadcast_to(level, subject.frames)[frame]) - subject.floor
+        if shows(angle, np.asarray(elevation), np.asarray(height), over):
+            found.append(angle)
+    return tuple(found)
+
+
 def achieved_angle(elevation: float) -> str:
-    """From the camera's elevation over its aim in radians (positive: it looks down)."""
-    if elevation > LOOKS_DOWN:
-        return "high-angle"
-    return "low-angle" if elevation < LOOKS_UP else "eye-level"
+    """Up, level or down, from the camera's elevation over its aim in radians (positive: it looks down)."""
+    nobody = np.asarray(0.0)
+    for angle in ("overhead", "high-angle", "low-angle"):
+        if shows(angle, np.asarray(elevation), nobody, None):
+            return angle
+    return "eye-level"
 
 
 def achieved_movement(track: CameraTrack, position: NDArray[np.float64]) -> str:

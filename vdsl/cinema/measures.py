@@ -16,10 +16,10 @@ from numpy.typing import NDArray
 from runtime.world import World
 
 from . import space
-from .framing import Array
+from .framing import Array, stretch
 from .score import geometry_score as geometry_score
 from .sight import backdrop_gaps, clear_lines, clear_of_people, hidden_walls
-from .sizes import PAPER_RADIUS, Size
+from .sizes import CORE, PAPER_RADIUS, Size
 from .subject import SIGHT, Subject
 from .track import CameraTrack, camera_axes, project
 from .vectors import dot, length
@@ -36,6 +36,8 @@ MEASURES = (
     "size_drift",  # the greatest |log| of the visible height at the subject against the key frame's
     "headroom",  # height of the frame above the crown, share of the frame, mean over the window
     "headroom_error",  # the same, off the size's own headroom
+    "head_cut",  # how far what the size puts at the top is above the frame, share of its height, the greatest
+    "feet_cut",  # the same below the frame, for sizes that are to show the whole; 0 for the others
     "lead_room",  # more room ahead of the face than behind: −1..1, 0 where it looks at the camera
     "thirds_error",  # distance of the eyes from the upper third, share of the frame's height
     "interest",  # share of the other points that matter (thing in hand, partner) in the frame and not hidden
@@ -49,6 +51,7 @@ MEASURES = (
     "horizon",  # degrees off the asked roll, the greatest
     "backdrop_gap",  # share of the picture's width where a wall taken away is missing behind the subject
     "elevation",  # degrees the camera looks down (positive) at its aim, at the key frame
+    "height",  # metres of the camera over the subject's floor, at the key frame
 )
 
 
@@ -119,7 +122,11 @@ def measure(takes: Takes, subject: Subject, world: World, fps: float) -> Measure
     values["foreground"] = _foreground(takes, world, at, camera, axes, picture, hidden)
     values |= _motion(track, takes.roll, fps)
     values["face"] = _face(takes, subject, at, camera, points[:, names.index("eyes")])
-    values["elevation"] = np.degrees(-rotation[np.arange(len(camera)), _key_sample(takes, at), 1])
+    rows, key = np.arange(len(camera)), _key_sample(takes, at)
+    values["elevation"] = np.degrees(-rotation[rows, key, 1])
+    values["height"] = camera[rows, key, 2] - subject.floor
+    if not takes.paper:
+        values["size_error"] = _size_error(takes, points, names, camera[rows, key], axes[rows, key], key, at)
     values["backdrop_gap"] = _gaps(world, hidden, track, at, camera, axes, points[:, names.index("waist")])
 
     near = takes.near if takes.near is not None else space.nearby(world.solids, camera)
@@ -161,31 +168,55 @@ def _framing(
     lower = np.array([picture.names.index(s.lower) for s in takes.sizes])
     top = np.array([s.top for s in takes.sizes])
     eyes = picture.of("eyes")
-    wide = np.array([s.lower in ("feet", "knees") for s in takes.sizes])
-    core = np.where(wide, picture.names.index("waist"), picture.names.index("chin"))
+    core = np.array([picture.names.index(CORE[s.name]) for s in takes.sizes])
     heads = inside[:, :, picture.names.index("eyes")]
     both = heads & inside[rows, :, core]
-    stretch = np.maximum(xy[rows, :, lower, 1] - xy[rows, :, upper, 1], 1e-4)
     key = _key_sample(takes, at)
     depth = np.maximum(picture.depth[:, :, picture.names.index("pocket")], 0.01)
     view = depth * takes.track.sensor[1] / takes.track.focal[:, at]
     drift = np.abs(np.log(view / view[rows, key][:, None]))
+    error = np.zeros(len(xy))
     if takes.paper:
         asked = np.array([PAPER_RADIUS[s.name] for s in takes.sizes]) * subject.height
         error = np.abs(np.log(view[rows, key] / asked))
-    else:
-        share = np.array([s.share for s in takes.sizes])
-        error = np.abs(np.log(stretch[rows, key] / share))
-    crown = xy[rows, :, upper, 1]
+    crown, sole = xy[rows, :, upper, 1], xy[rows, :, lower, 1]
+    whole = np.array([s.lower == "feet" for s in takes.sizes])
     return {
         "in_frame": _mean(both, window),
         "size_error": error,
         "size_drift": np.where(window, drift, 0.0).max(axis=1),
         "headroom": np.clip(_mean(crown, window), -1.0, 2.0),
         "headroom_error": np.minimum(_mean(np.abs(crown - top[:, None]), window), 2.0),
+        "head_cut": _beyond(-crown, window),
+        "feet_cut": np.where(whole, _beyond(sole - 1.0, window), 0.0),
         "thirds_error": np.minimum(_mean(np.abs(eyes[..., 1] - 1 / 3), window), 2.0),
         "lead_room": _lead(takes, subject, at, eyes[..., 0]),
     }, inside
+
+
+def _size_error(
+    takes: Takes,
+    points: Array,
+    names: list[str],
+    camera: Array,
+    axes: Array,
+    key: NDArray[np.int64],
+    at: NDArray[np.int64],
+) -> Array:
+    """|log| of what the size's stretch fills of the frame at the key sample, against its share: [P]."""
+    upper, lower = (
+        points[key, np.array([names.index(getattr(s, end)) for s in takes.sizes])]
+        for end in ("upper", "lower")
+    )
+    focal = takes.track.focal[np.arange(len(key)), at[key]]
+    filled = stretch(upper, lower, camera, axes, focal, takes.track.sensor)
+    share = np.array([s.share for s in takes.sizes])
+    return np.asarray(np.abs(np.log(np.maximum(filled, 1e-4) / share)))
+
+
+def _beyond(over: Array, window: Bools) -> Array:
+    """The most by which something is over a border of the frame while the window is open: [P, F] -> [P]."""
+    return np.clip(np.where(window, over, 0.0).max(axis=1), 0.0, 2.0)
 
 
 def _within(xy: Array, depth: Array, margin: float) -> Bools:

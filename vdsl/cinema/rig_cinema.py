@@ -20,6 +20,9 @@ from .vectors import dot
 
 Array = NDArray[np.float64]
 
+_RAISE = np.radians(20.0)  # how far above eye level a camera may be turned that would be in the floor
+_STEEP = np.radians(45.0)  # how far up or down one looks who has to be at some height
+
 
 def sensor(aspect: float) -> tuple[float, float]:
     """(width, height) in mm for a picture's width over its height: 36 × 20.25 at 16:9."""
@@ -47,36 +50,47 @@ def frame(
     focal: Array,
     film: tuple[float, float],
     lead: Array,
+    roll: float | Array = 0.0,
+    level: Array | None = None,
 ) -> Framing:
     """Framings of P cameras on a subject.
 
     path: [T, 3], what the cameras hold on to; at: [P] frame the framing is of; theta, phi: [P]
     lead: [P], how far from the middle (share of the frame's width) one who looks sideways is put,
         leaving room ahead
+    roll: radians the cameras lean; level: [P] height the camera is to have, which θ is solved for (as far
+        as it goes); NaN for those that keep theirs
     """
     upper, lower = subject.landmarks[size.upper][at], subject.landmarks[size.lower][at]
     across = subject.landmarks["eyes"][at]
-    if size.lower in ("feet", "knees"):
-        across = (across + subject.landmarks["waist"][at]) / 2
+    if size.lower in ("feet", "knees", "thigh"):
+        across = (across + subject.landmarks["waist"][at] + lower) / 3
     ones = np.ones(len(theta))
 
     def solved(polar: Array) -> tuple[Array, Array]:
         right = basis(polar, phi)[0]
         column = 0.5 - lead * dot(subject.face[at], right)
-        return solve(
-            upper, lower, across, polar, phi, focal, film, (size.top * ones, size.bottom * ones, column)
-        )
+        lines = (size.top * ones, size.bottom * ones, column)
+        return solve(upper, lower, across, polar, phi, focal, film, lines, roll)
 
+    def height(polar: Array) -> Array:
+        r, aim = solved(polar)
+        return np.asarray((aim + r[:, None] * direction(polar, phi))[:, 2])
+
+    asked, goal = theta, np.full(len(theta), FLOOR_CLEARANCE)
+    under, over = theta, np.minimum(theta, np.pi / 2) - _RAISE
+    loose = height(theta) < FLOOR_CLEARANCE
+    if level is not None and not np.isnan(level).all():
+        given = ~np.isnan(level)
+        goal, loose = np.where(given, np.fmax(level, FLOOR_CLEARANCE), goal), loose | given
+        under, over = np.where(given, np.pi / 2 + _STEEP, under), np.where(given, np.pi / 2 - _STEEP, over)
+    if loose.any():
+        for _ in range(14):  # halving, to less than a millimetre of height
+            middle = (under + over) / 2
+            sunk = height(np.where(loose, middle, theta)) < goal
+            under, over = np.where(sunk, middle, under), np.where(sunk, over, middle)
+        theta = np.where(loose, over, theta)
+        if level is not None:
+            asked = np.where(np.isnan(level), asked, theta)
     r, aim = solved(theta)
-    turned = theta.copy()
-    low = (aim + r[:, None] * direction(theta, phi))[:, 2] < FLOOR_CLEARANCE
-    if low.any():
-        under, over = theta.copy(), np.full_like(theta, np.pi / 2)
-        for _ in range(12):  # halving, to about a millimetre of height
-            turned = np.where(low, (under + over) / 2, theta)
-            r, aim = solved(turned)
-            sunk = (aim + r[:, None] * direction(turned, phi))[:, 2] < FLOOR_CLEARANCE
-            under, over = np.where(sunk, turned, under), np.where(sunk, over, turned)
-        turned = np.where(low, over, theta)
-        r, aim = solved(turned)
-    return Framing(r, turned, aim - path[at], np.abs(theta - turned))
+    return Framing(r, theta, aim - path[at], np.abs(asked - theta))

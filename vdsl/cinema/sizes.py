@@ -44,15 +44,22 @@ SIZES: dict[str, Size] = {
         Size("extreme-wide", "crown", "feet", 0.46, 0.74),
     )
 }
+
+
+def _centred(*shares: float) -> dict[str, Size]:
+    """Sizes of a stretch from ``crown`` to ``feet`` about the middle of the picture, close ones first."""
+    return {
+        name: Size(name, "crown", "feet", 0.5 - share / 2, 0.5 + share / 2)
+        for name, share in zip(SIZES, shares, strict=True)
+    }
+
+
 #: For things and for places, whose ``crown`` and ``feet`` are the ends of what is to be shown.
-THING_SIZES: dict[str, Size] = {
-    name: Size(name, "crown", "feet", 0.5 - share / 2, 0.5 + share / 2)
-    for name, share in (("close-up", 0.7), ("medium", 0.42), ("full", 0.26), ("wide", 0.14))
-}
-PLACE_SIZES: dict[str, Size] = {
-    name: Size(name, "crown", "feet", 0.5 - share / 2, 0.5 + share / 2)
-    for name, share in (("close-up", 1.6), ("medium", 1.2), ("full", 0.95), ("wide", 0.8))
-}
+THING_SIZES: dict[str, Size] = _centred(1.5, 1.0, 0.7, 0.54, 0.42, 0.36, 0.31, 0.26, 0.14, 0.07)
+PLACE_SIZES: dict[str, Size] = _centred(2.6, 2.0, 1.6, 1.4, 1.2, 1.1, 1.02, 0.95, 0.8, 0.5)
+#: The landmark that has to be in the frame besides the eyes.
+CORE: dict[str, str] = dict.fromkeys(SIZES, "chin") | {"extreme-close-up": "nose"}
+CORE |= dict.fromkeys(("medium-long", "full", "wide", "extreme-wide"), "waist")
 #: The paper's distances at 50 mm as shares of the character's height (section 3.2, Shot Scale);
 #: ``wide`` is ours, one step on.
 PAPER_RADIUS = {"close-up": 0.2, "medium": 0.5, "full": 1.0, "wide": 2.0}

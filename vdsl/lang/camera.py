@@ -5,12 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TypeAlias
 
-from . import ast, words
+from . import ast, ir, words
 from .diagnostics import Report, listing, nearest
 from .source import Span
 
 SLOTS = ("movement", "scale", "angle")
-_MOST_WORDS = 3  # close up shot
+_MOST_WORDS = 4  # extreme close up shot
 
 
 @dataclass(frozen=True)
@@ -29,7 +29,7 @@ FREE = CameraWords(words.ANY["movement"], words.ANY["scale"], words.ANY["angle"]
 _Term: TypeAlias = "ast.Star | tuple[tuple[str, Span], ...]"
 
 
-def read_camera(node: ast.CameraNode | None, report: Report) -> CameraWords:
+def read_camera(node: ast.CameraNode | None, rig: str, report: Report) -> CameraWords:
     """The words of a camera line, in any order, as each says what it is; ``*`` takes the next free slot."""
     if node is None or not node.words:
         return FREE
@@ -39,7 +39,7 @@ def read_camera(node: ast.CameraNode | None, report: Report) -> CameraWords:
         if isinstance(term, ast.Star):
             stars.append(term)
             continue
-        _take(term, found, report)
+        _take(term, found, rig, report)
     free = [slot for slot in SLOTS if slot not in found]
     if len(stars) > len(free):
         report.error(
@@ -103,7 +103,9 @@ def _longest(flat: list[tuple[str, Span, bool] | ast.Star], start: int) -> int:
     return 1
 
 
-def _take(term: tuple[tuple[str, Span], ...], found: dict[str, tuple[str, ...]], report: Report) -> None:
+def _take(
+    term: tuple[tuple[str, Span], ...], found: dict[str, tuple[str, ...]], rig: str, report: Report
+) -> None:
     """Put the words of one term into their slot."""
     slot: str | None = None
     meant: list[str] = []
@@ -122,6 +124,8 @@ def _take(term: tuple[tuple[str, Span], ...], found: dict[str, tuple[str, ...]],
                 help="separate movement, scale and angle with spaces",
             )
             continue
+        if rig == "paper":
+            _on_paper(meaning.words, span, report)
         slot = meaning.slot
         meant.extend(w for w in meaning.words if w not in meant)
     if slot is None:
@@ -144,8 +148,8 @@ def _unknown(word: str, span: Span, found: dict[str, tuple[str, ...]], report: R
         slot, near = words.NOT_YET[word]
         known = {
             "movement": tuple(words.ANY["movement"]),
-            "scale": (*words.PAPER_SCALES, "wide"),
-            "angle": words.ANY["angle"],
+            "scale": ir.SIZES,
+            "angle": ir.ALL_ANGLES,
         }
         report.error(
             "VDS041",
@@ -181,22 +185,36 @@ def _unknown(word: str, span: Span, found: dict[str, tuple[str, ...]], report: R
     return None
 
 
+def _on_paper(meant: tuple[str, ...], span: Span, report: Report) -> None:
+    """Report a word for which the paper gives no numbers."""
+    near = next((words.NEAREST[word] for word in meant if word in words.NEAREST), None)
+    if near is not None:
+        report.error(
+            "VDS046",
+            span,
+            label="the paper has no numbers for this",
+            suggestion=near,
+            fix=near,
+            help=f"say {near}, or frame with `rig cinema`",
+        )
+
+
 def _slot_help(slot: str) -> str:
     if slot == "movement":
         families = "static, follow, push, pull, zoom, tilt, pan, dolly, pedestal, arc"
         return f"movements: {families} (and -in, -out, -up, -down, -left, -right)"
     if slot == "scale":
-        return f"scales: {', '.join(words.PAPER_SCALES)}, wide"
-    return f"angles: {', '.join(words.ANY['angle'])}"
+        return f"scales: {', '.join(ir.SIZES)}"
+    return f"angles: {', '.join(ir.ALL_ANGLES)}"
 
 
 def _warn_mcs(span: Span, report: Report) -> None:
     report.warn(
         "VDS044",
         span,
-        label="MCS is a medium close shot, not a cowboy shot; taken as close-up",
-        help="say close-up for head and shoulders, or medium for down to the waist",
-        suggestion="close-up",
+        label="MCS is a medium close shot, not a cowboy shot; taken as medium-close-up",
+        help="say medium-close-up for down to the breast pocket, or cowboy for down to the thigh",
+        suggestion="medium-close-up",
     )
 
 

@@ -135,6 +135,7 @@ class _Checker:
             over.proposals or said.proposals or DEFAULT_PROPOSALS,
             over.takes or said.takes or DEFAULT_TAKES,
             over.style or said.style or DEFAULT_STYLE,
+            over.rig or said.rig or "cinema",
         )
 
     def _statement(self, index: int, statement: ast.Statement) -> None:

@@ -253,17 +253,17 @@ CODES: dict[str, Code] = {
     "VDS040": Code(
         "unknown camera word",
         "A camera line has a movement (static, follow, push, pull, zoom, tilt, pan, dolly, pedestal, arc), a scale "
-        "(close-up, medium, full, wide) and an angle (eye-level, high-angle, low-angle). Each may be `*`, a "
-        "choice like push|static, or left out.",
+        "(extreme-close-up, big-close-up, close-up, medium-close-up, medium, cowboy, medium-long, full, wide, "
+        "extreme-wide) and an angle (eye-level, high-angle, low-angle, overhead, worms-eye, shoulder-level, "
+        "hip-level, knee-level, ground-level). Each may be `*`, a choice like push|static, or left out.",
         "(anna walk) / (folow full eye-level)",
         "(anna walk) / (follow full eye-level)",
     ),
     "VDS041": Code(
         "a camera word that cannot be shot yet",
-        "Film grammar has more sizes, angles and movements than can be shot so far. The suggestion is the nearest "
-        "one that can.",
-        "(anna walk) / (static cowboy eye-level)",
-        "(anna walk) / (static medium eye-level)",
+        "Film grammar has more movements than can be shot so far. The suggestion is the nearest one that can.",
+        "(anna walk) / (crane medium eye-level)",
+        "(anna walk) / (pedestal medium eye-level)",
     ),
     "VDS042": Code(
         "two camera words of one kind",
@@ -280,9 +280,9 @@ CODES: dict[str, Code] = {
     "VDS044": Code(
         "MCS is a medium close shot",
         "MCS is often written for a cowboy shot (down to the thigh), but means a medium close shot (down to the "
-        "breast pocket). It is taken as a close-up, the nearest size there is.",
+        "breast pocket). It is taken as a medium close-up.",
         "(anna walk) / (static MCS eye-level)",
-        "(anna walk) / (static close-up eye-level)",
+        "(anna walk) / (static medium-close-up eye-level)",
     ),
     "VDS045": Code(
         "nobody to follow",
@@ -290,6 +290,13 @@ CODES: dict[str, Code] = {
         "below a story line, without a blank line between, it is another camera on that line.",
         "\n/ (follow wide eye-level)",
         "\n/ (pan wide eye-level)",
+    ),
+    "VDS046": Code(
+        "not a word of the paper",
+        "With `rig paper` cameras stand where the paper's printed numbers put them, and it prints none for the "
+        "further sizes, angles and movements. The suggestion is the nearest word that it has.",
+        "rig paper\n\n(anna walk) / (static cowboy eye-level)",
+        "rig paper\n\n(anna walk) / (static medium eye-level)",
     ),
     # -- options -----------------------------------------------------------------------------
     "VDS050": Code(

@@ -31,6 +31,10 @@ MOVEMENT_FAMILIES: dict[str, tuple[str, ...]] = {
 }
 SCALES = ("close-up", "medium", "full", "wide")
 ANGLES = ("eye-level", "high-angle", "low-angle")
+#: All sizes, from the closest; :data:`SCALES` are those that ``rig paper`` has, and so for the others.
+SIZES = ("extreme-close-up", "big-close-up", "close-up", "medium-close-up", "medium", "cowboy", "medium-long",
+         "full", "wide", "extreme-wide")  # fmt: skip
+ALL_ANGLES = (*ANGLES, "overhead", "worms-eye", "shoulder-level", "hip-level", "knee-level", "ground-level")
 
 
 @dataclass(frozen=True)

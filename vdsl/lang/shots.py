@@ -27,6 +27,7 @@ class Defaults:
     proposals: int
     takes: int
     style: str
+    rig: str = "cinema"
 
 
 @dataclass(frozen=True)
@@ -52,7 +53,7 @@ def read_shots(
     cameras: Sequence[ast.CameraNode | None] = node.cameras or (None,)
     shots = []
     for camera in cameras:
-        said = read_camera(camera, report)
+        said = read_camera(camera, defaults.rig, report)
         own = read_options(camera.options, defaults.fps, report) if camera else ShotOptions()
         said = _fitting(camera, said, not node.beats, context.subject, report)
         base = _line_words(context)

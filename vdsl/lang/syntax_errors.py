@@ -56,8 +56,6 @@ _N = r"[^\W\d][\w.-]*"
 RULES: tuple[Rule, ...] = (
     # signs no line has
     Rule("(anna wave) say “Hello.”", "“", (), r"([“”„«»])", "texts have straight quotes", 'use `"`', '"'),
-    Rule("(anna wave) / (static full bird's-eye)", "bird's", _STORY, r"(\w+['’]s)(?=[\s-]*eye)", "names have no apostrophe",
-         "as in `birds-eye`"),
     Rule("(anna wave) 4 s", "4 s", (), r"(?<![\w.-])(\d[\d.]*[ \t]+(?:mm|cm|m|deg|s|f))\b(?![\w-])", "the unit follows the number without a space",
          "as in `4s`"),
     Rule("(anna wave) say 'Hello.'", "'", (), r"(['’‘])", "texts have double quotes", 'use `"`', '"'),

@@ -46,29 +46,46 @@ _MOVEMENTS: dict[str, str] = {
     "arc-left|arc-right": "arc orbit around",
 }
 _SCALES: dict[str, str] = {
+    "extreme-close-up": "extreme-close-up ecu xcu extreme-closeup extreme-close extreme-close-shot detail",
+    "big-close-up": "big-close-up bcu big-closeup big-close tight-close-up choker",
     "close-up": "close-up closeup close cu close-shot",
+    "medium-close-up": "medium-close-up mcu medium-closeup medium-close mid-close-up bust bust-shot",
     "medium": "medium ms mid medium-shot mid-shot waist waist-shot",
-    "full": "full fs full-shot full-body",
+    "cowboy": "cowboy cowboy-shot american american-shot thigh-shot",
+    "medium-long": "medium-long mls mws medium-long-shot medium-wide medium-wide-shot knee-shot",
+    "full": "full fs full-shot full-body full-figure",
     "wide": "wide ws ls long wide-shot long-shot",
+    "extreme-wide": "extreme-wide ews els extreme-wide-shot extreme-long extreme-long-shot very-wide",
 }
 _ANGLES: dict[str, str] = {
-    "eye-level": "eye-level eye eyelevel level eyes",
+    "eye-level": "eye-level eye eyelevel level eyes eye-height",
     "high-angle": "high-angle high highangle from-above",
     "low-angle": "low-angle low lowangle from-below",
+    "overhead": "overhead overhead-shot birds-eye bird-eye birdseye birds-eye-view top-down gods-eye",
+    "worms-eye": "worms-eye worm-eye wormseye worms-eye-view",
+    "shoulder-level": "shoulder-level shoulder shoulder-height",
+    "hip-level": "hip-level hip hip-height waist-level cowboy-level",
+    "knee-level": "knee-level knee knee-height",
+    "ground-level": "ground-level ground ground-height floor-level",
+}
+#: The nearest word of the paper to each that the paper has not: what ``rig paper`` suggests, and what the
+#: discriminator, which knows the paper's words, is told.
+NEAREST: dict[str, str] = {
+    "extreme-close-up": "close-up",
+    "big-close-up": "close-up",
+    "medium-close-up": "close-up",
+    "cowboy": "medium",
+    "medium-long": "full",
+    "extreme-wide": "wide",
+    "overhead": "high-angle",
+    "worms-eye": "low-angle",
+    "shoulder-level": "eye-level",
+    "hip-level": "eye-level",
+    "knee-level": "low-angle",
+    "ground-level": "low-angle",
 }
 #: Words of film grammar that are not built yet, and the nearest that is.
 NOT_YET: dict[str, tuple[str, str]] = {
-    "extreme-close-up": ("scale", "close-up"), "ecu": ("scale", "close-up"), "xcu": ("scale", "close-up"),
-    "big-close-up": ("scale", "close-up"), "bcu": ("scale", "close-up"),
-    "medium-close-up": ("scale", "close-up"), "mcu": ("scale", "close-up"), "bust": ("scale", "close-up"),
-    "cowboy": ("scale", "medium"), "american": ("scale", "medium"),
-    "medium-long": ("scale", "full"), "mls": ("scale", "full"), "mws": ("scale", "full"),
-    "extreme-wide": ("scale", "wide"), "ews": ("scale", "wide"), "els": ("scale", "wide"),
-    "overhead": ("angle", "high-angle"), "birds-eye": ("angle", "high-angle"),
-    "top-down": ("angle", "high-angle"),
-    "worms-eye": ("angle", "low-angle"), "shoulder-level": ("angle", "eye-level"),
-    "hip-level": ("angle", "low-angle"), "knee-level": ("angle", "low-angle"),
-    "ground-level": ("angle", "low-angle"),
     "dutch": ("angle", "eye-level"), "ots": ("angle", "eye-level"), "pov": ("angle", "eye-level"),
     "two-shot": ("scale", "medium"),
     "crane": ("movement", "pedestal"), "roll": ("movement", "static"), "dolly-zoom": ("movement", "push"),
@@ -79,8 +96,8 @@ _HINTS = {
     "roll": "tilt the picture with the option `roll 12deg`",
 }
 
-#: Medium close shot, often mistaken for cowboy; taken as the nearest size there is.
-MEDIUM_CLOSE_SHOT = ("mcs", "close-up")
+#: Medium close shot, often mistaken for cowboy; taken as what it means.
+MEDIUM_CLOSE_SHOT = ("mcs", "medium-close-up")
 
 
 def _table() -> dict[str, Meaning]:
@@ -114,7 +131,13 @@ ARTICLES = ("the", "a", "an")
 
 def fold(word: str) -> str:
     """A word as the tables have it."""
-    return word.casefold().replace("_", "-").replace(" ", "-")
+    folded = word.casefold().replace("_", "-").replace(" ", "-")
+    return folded.replace("'", "").replace("’", "")
+
+
+def paper_word(word: str) -> str:
+    """The word of the paper that is nearest to a canonical one."""
+    return NEAREST.get(word, word)
 
 
 def hint(word: str) -> str | None:

@@ -20,6 +20,7 @@ from ranker.data import ShardWriter, Words
 from ..cinema.score import geometry_score
 from ..lang import Report, Settings, Source
 from ..lang.ir import ANGLES, MOVEMENT_FAMILIES, SCALES
+from ..lang.words import paper_word
 from ..library import Catalog
 from ..propose.story import propose
 from ..propose.types import CameraProposal, ProposalGrid
@@ -108,8 +109,9 @@ def _film_story(
         cameras = tuple(c.camera for c in picked)
         frames = camerawork.judge_frames(act.staged, shot.style, grid.story, cameras)
         for clip, pictures in zip(picked, frames, strict=True):
+            c = clip.camera
             movement, scale, angle = (
-                (_FAMILY[clip.camera.movement], clip.camera.scale, clip.camera.angle)
+                (_FAMILY[paper_word(c.movement)], paper_word(c.scale), paper_word(c.angle))
                 if clip.shows_type
                 else (None, None, None)
             )

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import numpy as np
 from numpy.typing import NDArray
 
 from runtime.world import Solids
 
-from ..cinema.angles import LOOKS_DOWN, LOOKS_UP
+from ..cinema.angles import lens_height, shows
 from ..cinema.measures import Measured
 from ..cinema.moves import FLOOR_CLEARANCE, family
 from ..cinema.space import Nearby, Stage, clearance
@@ -111,21 +113,29 @@ def reasons(shooting: Shooting, measured: Measured, subject: Subject) -> NDArray
         "subject_out_of_frame": v["in_frame"] < np.where(keeps, 0.85, 0.5 if walked > 0.5 else 0.7),
         "subject_hidden": (v["visibility"] < 0.6) | (v["head_visible"] < 0.5) | (v["foreground"] > 0.5),
         "wrong_size": (v["size_error"] > (0.6 if paper else 0.25)) | (drift > holds),
-        "wrong_angle": _wrong_angle(shooting, v["elevation"]),
+        "wrong_angle": _wrong_angle(shooting, v, subject),
         "too_fast": (v["speed"] > _FASTEST) | (v["angular_speed"] > _TURNS),
         "missing_backdrop": v["backdrop_gap"] > 0.12,
     }
     return _first(asked, len(shooting.movements))
 
 
-def _wrong_angle(shooting: Shooting, elevation: NDArray[np.float64]) -> NDArray[np.bool_]:
-    """Whether the key frame's elevation is not the asked one; raised cameras may look up less."""
-    angle = np.array(shooting.angles)
-    tilts = np.array([family(m) in ("tilt", "pedestal") for m in shooting.movements])
-    down, up = np.degrees(LOOKS_DOWN), np.degrees(LOOKS_UP)
-    eye = (angle == "eye-level") & ((elevation > down) | (elevation < up))
-    high = (angle == "high-angle") & (elevation < down)
-    low = (angle == "low-angle") & (elevation > up) & (shooting.lifted < 1e-9)
+def _wrong_angle(
+    shooting: Shooting, values: Mapping[str, NDArray[np.float64]], subject: Subject
+) -> NDArray[np.bool_]:
+    """Whether the key frame's angle is not the asked one; raised cameras may look up less."""
+    out = np.zeros(len(shooting.angles), bool)
     if shooting.rig == "paper":
-        return np.zeros(len(angle), bool)
-    return np.asarray((eye | high | low) & ~tilts)
+        return out
+    tilts = np.array([family(m) in ("tilt", "pedestal") for m in shooting.movements])
+    asked = np.array(shooting.angles)
+    elevation, height = np.radians(values["elevation"]), values["height"]
+    for angle in set(shooting.angles):
+        level = lens_height(angle, subject.landmarks, subject.floor, subject.kind)
+        if level is not None:
+            level = np.broadcast_to(level, subject.frames)[shooting.key] - subject.floor
+        shown = shows(angle, elevation, height, level)
+        if angle in ("low-angle", "worms-eye"):
+            shown |= shooting.lifted > 1e-9
+        out |= (asked == angle) & ~shown
+    return np.asarray(out & ~tilts)

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..cinema import rig_cinema, rig_paper
-from ..cinema.angles import CINEMA_THETA
+from ..cinema.angles import CINEMA_THETA, lens_height
 from ..cinema.framing import basis
 from ..cinema.moves import FLOOR_CLEARANCE, SIGN, Draw, family, track_of
 from ..cinema.sizes import size_of
@@ -21,6 +21,17 @@ Array = NDArray[np.float64]
 
 FILM = (30.0, 80.0)  # focal lengths of films, mm (the paper, section 3.2)
 _JITTER = np.radians(9.0)  # how far a camera of ``rig cinema`` may stand off its azimuth
+#: Long lenses need more room than most rooms have, and short ones stand too close to a face.
+_SHORTER = {
+    "extreme-close-up": 0.5,
+    "big-close-up": 0.7,
+    "medium-long": 1.5,
+    "full": 2.0,
+    "wide": 2.0,
+    "extreme-wide": 3.0,
+    "overhead": 3.0,
+    "worms-eye": 2.0,
+}
 _LEAD = 0.13  # how far off the middle one who looks sideways may be put, share of the width
 
 
@@ -169,12 +180,14 @@ def _shoot_one(
         key[:] = on
     at = np.where(key == 1, last, 0)
     mu = _mu(movement, sample.mu[i])
-    focal = _lens(shot, movement, scale, rig, sample.lens[i] ** (1.5 if subject.kind == "place" else 1.0), mu)
+    angles = tuple(shot.angles[k] for k in sample.angle[i])
+    bias = 1.5 if subject.kind == "place" else 1.0
+    bend = np.array([bias * _SHORTER.get(scale, 1.0) * _SHORTER.get(a, 1.0) for a in angles])
+    focal = _lens(shot, movement, rig, sample.lens[i] ** bend, mu)
     relative: Array = np.asarray(sample.azimuth[i] * (2 * np.pi / AZIMUTHS), float)
     if rig == "cinema":
         relative = relative + (2 * sample.jitter[i] - 1) * _JITTER
     phi = subject.heading[at] + relative
-    angles = tuple(shot.angles[k] for k in sample.angle[i])
     lead = sample.lead[i] * _LEAD
     if rig == "paper":
         path = subject.position + np.array((0.0, 0.0, rig_paper.reference_height(scale, subject.height)))
@@ -186,8 +199,9 @@ def _shoot_one(
         size = size_of(subject.kind, scale)
         path = anchor(subject, size.upper, size.lower, fps)
         asked = np.array([CINEMA_THETA[a] for a in angles])
-        framing = rig_cinema.frame(subject, size, path, at, asked, phi, focal, film, lead)
-        r, theta, offset, lifted = framing.r, framing.theta, framing.offset, framing.lifted
+        levels = _levels(subject, angles, at)
+        framing = rig_cinema.frame(subject, size, path, at, asked, phi, focal, film, lead, shot.roll, levels)
+        r, theta, offset, lifted = framing.r * sample.reach[i], framing.theta, framing.offset, framing.lifted
         height = np.zeros(len(i))
         if kind in ("push", "pull"):
             r = np.where(key == 1, r / mu, r)
@@ -215,7 +229,18 @@ def _turn(kind: str, u: Array) -> Array:
     return np.radians(low + (high - low) * u)
 
 
-def _lens(shot: Shot, movement: str, scale: str, rig: str, u: Array, mu: Array) -> Array:
+def _levels(subject: Subject, angles: tuple[str, ...], at: NDArray[np.int64]) -> Array | None:
+    """Height [P] the lens is to have; NaN for angles that do not say it."""
+    out = np.full(len(at), np.nan)
+    for angle in set(angles):
+        height = lens_height(angle, subject.landmarks, subject.floor, subject.kind)
+        if height is not None:
+            rows = np.array([a == angle for a in angles])
+            out[rows] = np.broadcast_to(height, subject.frames)[at[rows]]
+    return None if np.isnan(out).all() else out
+
+
+def _lens(shot: Shot, movement: str, rig: str, u: Array, mu: Array) -> Array:
     """Focal lengths at the first frame, evenly in the logarithm; zooms end inside the films' range too."""
     low, high = shot.lens
     if rig == "paper":
@@ -225,8 +250,7 @@ def _lens(shot: Shot, movement: str, scale: str, rig: str, u: Array, mu: Array) 
         top = np.maximum(np.minimum(top, max(high, FILM[1]) * mu), bottom)
     elif movement == "zoom-out":
         bottom = np.minimum(np.maximum(bottom, min(low, FILM[0]) * mu), top)
-    share = u**2 if scale in ("full", "wide") else u  # long lenses need more room than most rooms have
-    return np.asarray(bottom * (top / bottom) ** share)
+    return np.asarray(bottom * (top / bottom) ** u)
 
 
 def _travel(

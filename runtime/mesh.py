@@ -10,33 +10,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-#: Procedural surface patterns, evaluated by the rasteriser in world space. The index is what
-#: :attr:`Mesh.materials` holds.
-MATERIALS = (
-    "plain",
-    "wood",  # planks along X
-    "tile",
-    "brick",
-    "grass",
-    "asphalt",
-    "cloth",
-    "glass",  # drawn pale and bright, never shadowed
-    "glow",  # emits: lamps, screens
-    "carpet",
-    "concrete",
-    "plaster",
-    "water",  # slow swells under a web of light
-    "sand",
-    "stone",  # hewn blocks in a wall, flags on a floor
-    "metal",
-    "leaves",
-    "snow",
-    "earth",
-    "marble",
-    "cobble",
-    "parquet",
-    "plate",  # sheets of metal with seams
-)
+from .materials import MATERIALS
+
+__all__ = ["MATERIALS", "Mesh", "empty", "join"]
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,7 +1,7 @@
 """The channels keys may move, and reading timelines into them.
 
 A channel is ``part.axis`` or, for what there are two of, ``part_HAND.axis`` with HAND one of
-:data:`runtime.motion.types.HANDS`. Positive means, in radians unless said otherwise:
+:data:`runtime.motion.words.HANDS`. Positive means, in radians unless said otherwise:
 
 body: lean (forward), side (to the left), twist (to the left), bow (from the hips, forward)
 head: nod (down), turn (left), tilt (left);  eyes: turn (left), down;  lids: close 0..1

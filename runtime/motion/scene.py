@@ -17,13 +17,13 @@ from .plan import Event, Plan, Window
 from .props import Hold, track_prop
 from .rotations import wrap
 from .types import (
-    BODY_PLACES,
     Gaze,
     PropState,
     Reach,
     TargetPoint,
     Task,
 )
+from .words import BODY_PLACES
 
 Array = NDArray[np.float64]
 

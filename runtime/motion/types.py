@@ -18,40 +18,6 @@ from runtime.world import Hinge, Stairs
 
 Point = tuple[float, float, float]
 
-#: Where a reach may lead, apart from ``target`` and ``second``: places on one's own body, and the
-#: point between two people where hands meet.
-BODY_PLACES = (
-    *("mouth", "ear", "chin", "chest", "hip", "head", "heart", "belly", "eyes", "elbow", "lap", "front"),
-    *("knee", "thigh", "shoulder", "neck", "cheek", "forehead", "back"),
-)
-#: Places on the other person's body, written ``partner.shoulder`` in a reach; for a left hand those on
-#: the side that is before it.
-PARTNER_PLACES = ("shoulder", "hand", "back", "waist", "head", "cheek", "chest", "elbow", "belly")
-#: ``clasp`` is where two people's hands hold each other, ``floor`` the floor before one, ``held`` the thing
-#: in the other hand.
-REACH_PLACES = (
-    *("target", "second", "meet", "clasp", "floor", "held"),
-    *BODY_PLACES,
-    *(f"partner.{p}" for p in PARTNER_PLACES),
-)
-#: How a body may be between two shots, and the ones it may be left in besides.
-POSTURES = (
-    "standing",
-    "sitting",
-    "kneeling",
-    "crouching",
-    "lying",
-    "floor",
-    "one-knee",
-    "prone",
-    "fours",
-    "plank",
-)
-#: Where eyes may rest: ``partner`` is the other person of the action, ``held`` the thing in the hand.
-GAZE_PLACES = ("target", "second", "partner", "held", "ahead", "down", "up", "aside", "around")
-#: Which hand an entry means; resolved when the action is performed.
-HANDS = ("left", "right", "near", "other", "holding", "free")
-
 
 @dataclass(frozen=True)
 class ActorState:
@@ -59,8 +25,8 @@ class ActorState:
 
     position: point on the floor below the hips; heading: radians
     kept: the pose that stays from the action before
-    posture: one of :data:`POSTURES`; ``floor`` sits on the ground, ``lying`` is on the back (the head away
-        from the heading), ``prone`` on the belly
+    posture: one of :data:`.words.POSTURES`; ``floor`` sits on the ground, ``lying`` is on the back (the head
+        away from the heading), ``prone`` on the belly
     seat: middle of the surface sat or lain on
     held: (hand, object id) for each thing in a hand
     """
@@ -169,7 +135,7 @@ class Beat:
 class Reach:
     """A hand goes to a place: leaves at ``start``, is there from ``arrive`` to ``leave``, is back at ``end``.
 
-    hand: one of :data:`HANDS`; to: one of :data:`REACH_PLACES`
+    hand: one of :data:`.words.HANDS`; to: one of :data:`.words.REACHABLE`
     offset: metres ahead of, to the outside of and above the place, seen from the person
     palm: where the palm faces: ``side`` (inward), ``down``, ``up``, ``ahead`` (fingers up)
     shake: metres up and down while there, ``times`` times; along: metres along the held thing, for ``held``
@@ -358,8 +324,8 @@ class ActionClip:
     faces: what the body turns to before it begins: ``target``, ``second``, ``away`` or ``none``
     lead: whether the clip also plays while walking there (a talk on the way) rather than after it
     feeling: what shows on the face, a word of :data:`runtime.motion.feelings.FEELINGS`, or ""
-    posture: one of :data:`POSTURES` taken before the clip's own part, "" to stay as one is; posture_time:
-        seconds it takes (0: as long as it naturally does); rises: stands up again afterwards
+    posture: one of :data:`.words.POSTURES` taken before the clip's own part, "" to stay as one is
+    posture_time: seconds it takes (0: as long as it naturally does); rises: stands up again afterwards
     apart: metres between the two people of the action, 0 for talking distance; hold: the last pose stays
     needs_hand: ``left`` or ``right`` where what it needs has to be in that hand, "" for either
     capture: motion that the body goes through in the clip's own part

@@ -9,12 +9,13 @@ from pathlib import Path
 import pytest
 from lang_helpers import HEAD
 
+from runtime.materials import MATERIALS
+from runtime.motion.words import BODY_PLACES, GAZES, HANDS
 from vdsl.lang import Report, Source, ast, check, ir, parse, words
-from vdsl.lang.definitions.action import BODY_PLACES, CENTRE, GAZES, HANDS, SIDED
 from vdsl.lang.definitions.looks import FEATURES
-from vdsl.lang.definitions.primitives import MATERIALS
 from vdsl.lang.definitions.prop import ENTRIES
 from vdsl.lang.definitions.set import ROOM_ENTRIES, SET_ENTRIES
+from vdsl.lang.definitions.timeline import CENTRE, SIDED
 from vdsl.lang.options import _READERS as OPTIONS
 from vdsl.lang.parse import STATEMENTS
 from vdsl.library import Catalog

@@ -8,23 +8,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
+from runtime.motion.feelings import FEELINGS
+from runtime.motion.words import POSTURES
+
 from .. import ast
 from ..diagnostics import Report
 from .reader import Reader, unknown_entry
-from .timeline import BODY_PLACES, CENTRE, GAZES, HANDS, MOVES, SIDED, Part, mirrored, read_part, scaled
+from .timeline import MOVES, Part, mirrored, read_part, scaled
 from .types import DefinitionBase
-
-__all__ = [
-    "BODY_PLACES",
-    "CENTRE",
-    "GAZES",
-    "HANDS",
-    "MOVES",
-    "SIDED",
-    "ActionDef",
-    "VariantDef",
-    "read_action",
-]
 
 TARGET_KINDS = ("place", "object", "character")
 SETTINGS = ("target", "second", "duration", "travel", "stride", "cadence", "gait", "sit", "posture", "needs",
@@ -34,19 +25,6 @@ CHANGES = ("amplitude", "tempo", "mirror", "duration", "stride", "cadence", "gai
 TRAVELS = ("none", "walk", "run", "skip", "crawl")
 #: Which drawer of the library an action lies in.
 GROUPS = ("going", "posture", "gesture", "hand", "social", "emotion", "sport", "work", "music", "talk")
-POSTURES = (
-    "standing",
-    "sitting",
-    "kneeling",
-    "crouching",
-    "lying",
-    "floor",
-    "one-knee",
-    "prone",
-    "fours",
-    "plank",
-)
-FEELINGS = ("neutral", "happy", "sad", "angry", "afraid", "surprised", "disgusted")
 #: What may be said of a gait, with the kind of value and what it is until said.
 GAIT: dict[str, tuple[str, float]] = {
     "lift": ("length", 0.0), "bounce": ("length", 0.0), "sway": ("angle", 0.0), "lean": ("angle", 0.0),
@@ -179,7 +157,7 @@ def _settings(
         posture_time=posture.seconds("in", 0.0) if posture is not None else 0.0,
         rises=posture.flag("back") if posture is not None else False,
         apart=settings["apart"].value_length(0) if "apart" in settings else 0.0,
-        feeling=word("feeling", "", FEELINGS),
+        feeling=word("feeling", "", tuple(FEELINGS)),
         group=word("group", "", GROUPS),
         example=example.value_text(0) if example is not None else "",
         props=example.words("with") if example is not None else (),

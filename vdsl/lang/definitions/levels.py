@@ -9,11 +9,13 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field, replace
 
+from runtime.materials import MATERIALS
+
 from ..diagnostics import Report, nearest
 from ..source import Span
 from .colours import Colour, checked_colour
 from .placing import WALLS, Placed, placed_node, read_standing
-from .primitives import MATERIALS, Point
+from .primitives import Point
 from .prop import PropSpot
 from .reader import Reader
 from .types import SetNode

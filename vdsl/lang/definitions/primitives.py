@@ -8,6 +8,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
+from runtime.materials import MATERIALS
+
 from .. import ast
 from ..source import Span
 from .colours import Colour, checked_colour
@@ -16,10 +18,6 @@ from .reader import Reader
 Point = tuple[float, ...]
 
 PRIMITIVES = ("box", "cylinder", "sphere", "cone", "lathe", "extrude", "tube")
-#: Same words as :data:`runtime.mesh.MATERIALS`, which the language may not import.
-MATERIALS = ("plain", "wood", "tile", "brick", "grass", "asphalt", "cloth", "glass", "glow", "carpet",
-             "concrete", "plaster", "water", "sand", "stone", "metal", "leaves", "snow", "earth", "marble",
-             "cobble", "parquet", "plate")  # fmt: skip
 #: Directions a shape's own axis may be laid along.
 AXES = ("x", "y", "z", "-x", "-y", "-z")
 

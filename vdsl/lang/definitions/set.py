@@ -11,6 +11,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
+from runtime.materials import MATERIALS
+
 from .. import ast
 from ..diagnostics import Report, listing, nearest
 from ..evaluate import Bound
@@ -30,7 +32,7 @@ from .placing import (
     read_placed,
     walk_placed,
 )
-from .primitives import MATERIALS, Point
+from .primitives import Point
 from .prop import PropDef, PropSpot, read_spot, unrolled
 from .reader import Reader, unknown_entry
 from .types import DefinitionBase, SetNode

@@ -11,17 +11,13 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from itertools import pairwise
 
+from runtime.motion.words import GAZES, HANDS, PARTNER_PLACES, REACHABLE
+
 from .. import ast
 from ..diagnostics import Report
 from ..evaluate import evaluate
 from .reader import Reader, unknown_entry
 
-HANDS = ("left", "right", "near", "other", "holding", "free")
-BODY_PLACES = ("mouth", "ear", "chin", "chest", "hip", "head", "heart", "belly", "eyes", "elbow", "lap",
-               "front", "knee", "thigh", "shoulder", "neck", "cheek", "forehead", "back")  # fmt: skip
-PARTNER_PLACES = ("shoulder", "hand", "back", "waist", "head", "cheek", "chest", "elbow", "belly")
-REACHABLE = ("target", "second", "meet", "clasp", "floor", "held", "partner", *BODY_PLACES)
-GAZES = ("target", "second", "partner", "held", "ahead", "down", "up", "aside", "around")
 PALMS = ("side", "down", "up", "ahead")
 LEADS = ("palm", "point")
 #: Parts there are one of, and their axes with the kind of value.

@@ -1,0 +1,31 @@
+"""The words for materials, and the numbers they have in meshes and pictures."""
+
+from __future__ import annotations
+
+#: Procedural surface patterns, evaluated by the rasteriser in world space. The index is what
+#: :attr:`runtime.mesh.Mesh.materials` holds.
+MATERIALS = (
+    "plain",
+    "wood",  # planks along X
+    "tile",
+    "brick",
+    "grass",
+    "asphalt",
+    "cloth",
+    "glass",  # drawn pale and bright, never shadowed
+    "glow",  # emits: lamps, screens
+    "carpet",
+    "concrete",
+    "plaster",
+    "water",  # slow swells under a web of light
+    "sand",
+    "stone",  # hewn blocks in a wall, flags on a floor
+    "metal",
+    "leaves",
+    "snow",
+    "earth",
+    "marble",
+    "cobble",
+    "parquet",
+    "plate",  # sheets of metal with seams
+)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 from dataclasses import fields
 from pathlib import Path
 
@@ -16,7 +17,7 @@ from vdsl.lang.definitions.set import SetDef, read_set
 from vdsl.lang.diagnostics import Report
 from vdsl.lang.parse import parse_definition
 from vdsl.lang.source import Source
-from vdsl.library.loader import Catalog
+from vdsl.library.loader import LIBRARY, Catalog
 from vdsl.stage.cache import load_world
 from vdsl.stage.world import build_world
 
@@ -73,6 +74,26 @@ def test_what_it_is_made_of_decides(tmp_path: Path) -> None:
     )
     load_world(definition(), Catalog.for_script(script, report), cache=tmp_path)
     assert len(list(tmp_path.glob("*.npz"))) == 5
+
+
+def test_a_prop_of_the_library_that_changes_is_built_anew(tmp_path: Path) -> None:
+    library = tmp_path / "library"
+    for folder in ("props", "sets"):
+        shutil.copytree(LIBRARY / folder, library / folder)
+    before = load_world(definition(), Catalog(library=library), cache=tmp_path / "worlds")
+    (library / "props" / "aaa.vds").write_text(
+        "prop cup {\n    box (8cm, 8cm, 30cm)\n    grip (0, 0, 4cm)\n}\n"
+    )
+    after = load_world(definition(), Catalog(library=library), cache=tmp_path / "worlds")
+    heights = [next(o for o in w.objects if o.path[-1] == "cup").high[2] for w in (before, after)]
+    assert heights[1] > heights[0] + 0.1
+
+
+def test_nothing_is_parsed_for_a_world_on_disk(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    load_world(definition(), Catalog(), cache=tmp_path)
+    catalog = Catalog()
+    monkeypatch.setattr(catalog, "get", None)
+    load_world(definition(), catalog, cache=tmp_path)
 
 
 @pytest.mark.parametrize("harm", ["cut", "empty", "text", "arrays"])

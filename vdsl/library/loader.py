@@ -7,8 +7,9 @@ place in the file they are in. Importing this module reads nothing.
 
 from __future__ import annotations
 
+import hashlib
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from importlib import import_module
 from pathlib import Path
 
@@ -36,6 +37,7 @@ class Catalog:
         self._own: dict[tuple[str, str], ast.Definition | ast.FileDefinition] = {}
         self._folder = Path()
         self._index: dict[str, dict[str, Source]] = {}
+        self._digests: dict[str, str] = {}
         self._unread: set[tuple[str, str]] = set()
         self._read: dict[tuple[str, str], DefinitionBase | None] = {}
 
@@ -79,6 +81,24 @@ class Catalog:
         if (kind, name) in self._own:
             return self._own[kind, name].span.source
         return self._scan(kind).get(name)
+
+    def written(self, kind: str, names: Iterable[str]) -> tuple[str, ...] | None:
+        """What decides about definitions, found without parsing any: the text of each that is the script's
+        own, and a digest of all the library's files of that kind. None where one is out of another
+        program's file.
+        """
+        own = [self._own[kind, name] for name in names if (kind, name) in self._own]
+        if any(isinstance(one, ast.FileDefinition) for one in own):
+            return None
+        return (*(one.span.text for one in own), self._digest(kind))
+
+    def _digest(self, kind: str) -> str:
+        """Of the library's files of a kind."""
+        if kind not in self._digests:
+            sources = {s.name: s.text for s in self._scan(kind).values()}
+            told = "\0".join(part for name in sorted(sources) for part in (Path(name).name, sources[name]))
+            self._digests[kind] = hashlib.sha256(told.encode()).hexdigest()
+        return self._digests[kind]
 
     def files(self) -> Iterator[FileDef]:
         """The script's definitions out of other programs' files."""

@@ -1,8 +1,9 @@
 """Built worlds, kept on disk between runs by what they are made of.
 
-A world is found again by the text of its set and of every prop in it, the hour, the room it is seen from and
-the code that builds it. Guarantees that a file that is damaged or of another version is built anew, that
-two who write at once do not harm each other, and that a disk that is full or may not be written is no error.
+A world is found again by the text of its set, of the script's own props in it and of all the library's props,
+the hour, the room it is seen from and the code that builds it; none of it is parsed for that. Guarantees that
+a file that is damaged or of another version is built anew, that two who write at once do not harm each other,
+and that a disk that is full or may not be written is no error.
 Sets and props out of other programs' files are always built.
 """
 
@@ -30,7 +31,8 @@ from runtime.world import Hinge, Level, Light, Solids, Spot, Stairs, Wall, World
 
 from ..lang.definitions.files import FileDef
 from ..lang.definitions.placing import Placed, walk_placed
-from ..lang.definitions.set import PropCatalog, SetDef
+from ..lang.definitions.set import SetDef
+from ..library import Catalog
 from .world import build_world
 
 #: Raised when the layout of the files changes.
@@ -48,7 +50,7 @@ Arrays = dict[str, NDArray[Any]]
 
 def load_world(
     definition: SetDef,
-    catalog: PropCatalog,
+    catalog: Catalog,
     time: str = "",
     room: tuple[str, ...] = (),
     cache: Path | None = None,
@@ -70,13 +72,12 @@ def load_world(
     return found
 
 
-def _texts(definition: SetDef, catalog: PropCatalog) -> list[str] | None:
-    """The text of the set and of each of its props; None where some of it is not text."""
-    names = dict.fromkeys(sorted(_props(definition)))
-    used = [definition, *(catalog.get("prop", name) for name in names)]
-    if any(isinstance(one, FileDef) for one in used):
+def _texts(definition: SetDef, catalog: Catalog) -> tuple[str, ...] | None:
+    """What the set and its props are written as; None where some of it is not text."""
+    if isinstance(definition, FileDef):
         return None
-    return [one.span.text for one in used if hasattr(one, "span")]
+    props = catalog.written("prop", dict.fromkeys(sorted(_props(definition))))
+    return None if props is None else (definition.span.text, *props)
 
 
 def _props(definition: SetDef) -> Iterator[str]:

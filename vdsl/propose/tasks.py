@@ -299,7 +299,8 @@ def _where_to(
         return None if there and actor.posture == "lying" else beat.target
     goes = not any(v.duration > 0 and _plays(v.timeline) for v in clip.variants) or clip.lead or clip.goes
     if goes and beat.target is not None:
-        return beat.target
+        carried = target is not None and target.object is not None and target.object in held
+        return beat.second if carried else beat.target
     pairs = ((beat.second, second, "second"), (beat.target, target, "target"))
     for written, point, word in pairs:
         if written is None or point is None or (point.object in held and point.object is not None):

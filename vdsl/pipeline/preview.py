@@ -117,8 +117,9 @@ class Studio:
             prop = self.catalog.get("prop", name)
             if not isinstance(prop, PropDef):
                 raise NoTrialError(f"there is no prop `{name}`")
-            act = stage_script(floor_script(f"place it = {name}, at (6, 6)m"), name, self.own)
-            low, high = _bounds(act.staged.world, ("floor", "it"))
+            act, low, high = self._placed(name, 0.0)
+            if low[2] < -0.005:  # it hangs on a wall or from a ceiling
+                act, low, high = self._placed(name, -low[2])
             reach = float(np.linalg.norm(np.subtract(high, low)))
             aim = tuple((a + b) / 2 for a, b in zip(low, high, strict=True))
             eye = around(
@@ -129,6 +130,12 @@ class Studio:
                 (name, " x ".join(f"{b - a:.2f}" for a, b in zip(low, high, strict=True)) + " m", image)
             )
         return grid(cells, min(columns, len(cells)))
+
+    def _placed(self, name: str, up: float) -> tuple[Act, tuple[float, ...], tuple[float, ...]]:
+        """A prop on a bare floor or above it, and its bounds."""
+        height = f", up {up:.3f}m" if up else ""
+        act = stage_script(floor_script(f"place it = {name}, at (6, 6)m{height}"), name, self.own)
+        return act, *_bounds(act.staged.world, ("floor", "it"))
 
     # -- scenes ------------------------------------------------------------------------------
 

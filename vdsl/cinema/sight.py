@@ -199,6 +199,17 @@ def _cut(solids: Solids, box: NDArray[np.int64], camera: Array, points: Array) -
     return np.asarray((enter < np.minimum(leave, last)) & (leave > 0.0) & ~within)
 
 
+def blockers(solids: Solids, camera: Array, points: Array) -> dict[int, int]:
+    """How many of the lines from cameras [N, 3] to points [K, 3] each object cuts, by its id; walls aside."""
+    boxes = np.flatnonzero(solids.wall < 0)
+    n, k = np.divmod(np.arange(len(camera) * len(boxes)), max(len(boxes), 1))
+    ends = np.broadcast_to(points, (len(n), *points.shape))
+    cut = _cut(solids, boxes[k], camera[n], ends)
+    owner = np.repeat(solids.object[boxes[k]], points.shape[0])[cut.ravel()]
+    ids, counts = np.unique(owner, return_counts=True)
+    return {int(i): int(c) for i, c in zip(ids, counts, strict=True)}
+
+
 def clear_of_people(camera: Array, points: Array, bodies: list[tuple[Array, Array, float]]) -> Bools:
     """Whether lines pass everybody else: bodies are (foot [F, 3], crown [F, 3], radius) pillars.
 

@@ -27,7 +27,7 @@ from ..cinema.subject import Subject, person, place, thing
 from ..cinema.track import CameraTrack
 from ..lang.ir import Shot, Target
 from ..library import Catalog
-from .drawing import draw, generator
+from .drawing import Sample, draw, generator, nudged
 from .rejection import REASONS, SOFT, no_room, reasons
 from .shooting import Shooting, shoot
 from .types import STILL, CameraProposal, ProposalGrid, StoryProposal
@@ -83,25 +83,28 @@ def propose_cameras(shot: Shot, stories: Sequence[StoryProposal], filming: Filmi
     batches: list[_Batch] = []
     rejected: Counter[str] = Counter()
     considered, good, wanted = 0, 0, shot.proposals
-    for number in range(_ROUNDS):
+    few = min(_FEW, wanted)
+    for number in range(_ROUNDS + 1):
         # a few more than are wanted: another round costs more than they do
         share = max(_HOPE * good / considered, 0.05) if considered else 0.75
         count = int(np.clip((wanted - good) / share, 16, _MOST * wanted))
         rng = generator(filming.seed, shot.id, f"cameras {number}")
+        sample = draw(shot, len(stories), count, rng)
+        if number == _ROUNDS:  # what the grid has no room for may have some beside it
+            sample = nudged(sample, rng)
         considered += count
-        for batch in _consider(shot, stories, subjects, stages, filming, count, rng, rejected):
+        for batch in _consider(shot, stories, subjects, stages, filming, sample, rejected):
             batches.append(batch)
             good += int((batch.reason < 0).sum())
             rejected.update(REASONS[k] for k in batch.reason[batch.reason >= 0])
-        if good >= wanted:
+        if good >= (wanted if number < _ROUNDS - 1 else few):
             break
     chosen = _choose(batches, wanted)
-    for b, p in chosen:
-        if batches[b].reason[p] >= 0:  # let back in
-            rejected[REASONS[batches[b].reason[p]]] -= 1
+    let_in = [batches[b].reason[p] for b, p in chosen if batches[b].reason[p] >= 0]
+    rejected.subtract(REASONS[k] for k in let_in)
     cameras = tuple(_proposal(i, batches[b], p, shot) for i, (b, p) in enumerate(chosen))
     counts = {k: v for k, v in sorted(rejected.items()) if v > 0}
-    return ProposalGrid(shot.id, name, tuple(stories), cameras, considered, counts)
+    return ProposalGrid(shot.id, name, tuple(stories), cameras, considered, counts, len(let_in))
 
 
 def subject_of(shot: Shot, story: StoryProposal, filming: Filming) -> Subject:
@@ -122,7 +125,7 @@ def subject_of(shot: Shot, story: StoryProposal, filming: Filming) -> Subject:
 def _establishes(shot: Shot, story: StoryProposal) -> bool:
     """Whether a shot in which nobody acts shows the place: it is wide, and nobody was named as its focus."""
     named = shot.focus is not None and shot.focus.span.text == shot.focus.written
-    return story.variant == STILL and not named and set(shot.scales) <= {"wide", "full"}
+    return story.variant == STILL and not named and set(shot.scales) <= {"extreme-wide", "wide", "full"}
 
 
 def find_object(world: World, target: Target) -> WorldObject | None:
@@ -165,42 +168,70 @@ def _consider(
     subjects: Sequence[Subject],
     stages: Sequence[Stage],
     filming: Filming,
-    count: int,
-    rng: np.random.Generator,
+    sample: Sample,
     rejected: Counter[str],
 ) -> list[_Batch]:
-    """Draw, shoot, measure and judge so many candidates; counts those without room in ``rejected``."""
-    sample = draw(shot, len(stories), count, rng)
+    """Shoot, measure and judge candidates; counts those without room in ``rejected``."""
     out = []
     for s, subject in enumerate(subjects):
         rows = np.flatnonzero(sample.story == s)
         if not len(rows):
             continue
-        story = stories[s]
-        shooting = shoot(shot, subject, sample, rows, filming.rig, filming.sensor, filming.fps)
-        solids, at = filming.world.solids, samples(subject.frames)
-        near = nearby(solids, shooting.track.position[:, at])
-        early = no_room(shooting, near, solids, stages[s], at)
-        rejected.update(REASONS[k] for k in early[early >= 0])
-        kept = np.flatnonzero(early < 0)
-        if not len(kept):
+        tried = try_cameras(shot, stories[s], subject, stages[s], filming, sample, rows)
+        rejected.update(REASONS[k] for k in np.delete(tried.reason, tried.kept))
+        if tried.measured is None:
             continue
-        shooting = shooting.only(kept)
-        takes = replace(_takes(shot, subject, shooting, story, filming), near=near.only(kept))
-        measured = measure(takes, subject, filming.world, filming.fps)
-        reason = reasons(shooting, measured, subject)
+        shooting = tried.shooting.only(tried.kept)
         out.append(
             _Batch(
                 s,
                 sample.azimuth[rows][shooting.order],
                 sample.movement[rows][shooting.order],
                 shooting,
-                measured,
-                geometry_scores(measured.values),
-                reason,
+                tried.measured,
+                geometry_scores(tried.measured.values),
+                tried.reason[tried.kept],
             )
         )
     return out
+
+
+@dataclass(frozen=True, eq=False)
+class Tried:
+    """Candidates of one story looked at.
+
+    reason: [P] index into REASONS, −1 for the good ones; kept: those that have room; measured: those alone,
+    None where there are none
+    """
+
+    shooting: Shooting
+    reason: NDArray[np.int64]
+    kept: NDArray[np.int64]
+    measured: Measured | None
+
+
+def try_cameras(
+    shot: Shot,
+    story: StoryProposal,
+    subject: Subject,
+    stage: Stage,
+    filming: Filming,
+    sample: Sample,
+    rows: NDArray[np.int64],
+) -> Tried:
+    """Shoot the sampled rows on one story; what has room is measured and judged."""
+    shooting = shoot(shot, subject, sample, rows, filming.rig, filming.sensor, filming.fps)
+    solids, at = filming.world.solids, samples(subject.frames)
+    near = nearby(solids, shooting.track.position[:, at])
+    reason = no_room(shooting, near, solids, stage, at)
+    kept = np.flatnonzero(reason < 0)
+    if not len(kept):
+        return Tried(shooting, reason, kept, None)
+    left = shooting.only(kept)
+    takes = replace(_takes(shot, subject, left, story, filming), near=near.only(kept))
+    measured = measure(takes, subject, filming.world, filming.fps)
+    reason[kept] = reasons(left, measured, subject)
+    return Tried(shooting, reason, kept, measured)
 
 
 def _takes(shot: Shot, subject: Subject, shooting: Shooting, story: StoryProposal, filming: Filming) -> Takes:

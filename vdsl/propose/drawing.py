@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,7 +26,9 @@ class Sample:
 
     story, movement, scale, angle: int [N] indices into what the shot allows; azimuth: int [N], 0..7
     lam: λ [N]; key: 0 start or 1 end; on: bool; before: 0, 0.5 or 1
-    the rest [N] in 0..1, to be spread over their ranges: lens, mu, turn, travel, lead, jitter
+    reach: [N], the distance as a share of the solved one; 1 but where cameras are nudged
+    the rest [N] in 0..1, to be spread over their ranges: lens, mu, turn, travel, lead, jitter (beyond that
+        range where cameras are nudged)
     """
 
     story: NDArray[np.int64]
@@ -44,6 +46,7 @@ class Sample:
     travel: NDArray[np.float64]
     lead: NDArray[np.float64]
     jitter: NDArray[np.float64]
+    reach: NDArray[np.float64]
 
 
 def draw(shot: Shot, stories: int, count: int, rng: np.random.Generator) -> Sample:
@@ -72,4 +75,20 @@ def draw(shot: Shot, stories: int, count: int, rng: np.random.Generator) -> Samp
         travel=spread(),
         lead=spread(),
         jitter=spread(),
+        reach=np.ones(count),
     )
+
+
+#: How far nudged cameras go: times the usual way off their azimuth (half way to the next one), and shares of
+#: the solved distance, well within what ``wrong_size`` allows.
+_ASIDE = 2.5
+_NEARER, _FARTHER = 0.88, 1.2
+
+
+def nudged(sample: Sample, rng: np.random.Generator) -> Sample:
+    """The same candidates for where the usual ones found no room: between the azimuths, from a little
+    nearer or farther, with shorter lenses."""
+    count = len(sample.story)
+    reach = _NEARER * (_FARTHER / _NEARER) ** rng.random(count)
+    aside = 0.5 + _ASIDE * (sample.jitter - 0.5)
+    return replace(sample, jitter=aside, reach=reach, lens=sample.lens**2)

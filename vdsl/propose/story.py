@@ -24,6 +24,7 @@ from ..lang.diagnostics import Report
 from ..lang.ir import Shot, StoryLine
 from ..library import Catalog
 from ..stage.actions import build_clip
+from .advice import advise
 from .cameras import Filming, propose_cameras
 from .drawing import generator
 from .state import SceneState, opening_state
@@ -108,12 +109,21 @@ def advance(
     return tell(state, line, replace(filming, catalog=catalog), report, most=1).end
 
 
-def propose(line: StoryLine, shot: Shot, state: SceneState, filming: Filming) -> ProposalGrid:
-    """S · C proposals of one shot: the line performed, and cameras on it."""
+def propose(
+    line: StoryLine, shot: Shot, state: SceneState, filming: Filming, advised: bool = False
+) -> ProposalGrid:
+    """S · C proposals of one shot: the line performed, and cameras on it.
+
+    advised: where no camera does what the line says, find out why, and what would work
+    """
     told = tell(state, line, filming, shot=shot)
     moved = [p for p in told.end.world.objects if p.hinge is not None]
     widest = {p.id: max(p.ajar, state.world.objects[p.id].ajar) for p in moved}  # what opens hides most open
-    return propose_cameras(shot, told.proposals, replace(filming, world=state.world.opened(widest)))
+    filming = replace(filming, world=state.world.opened(widest))
+    grid = propose_cameras(shot, told.proposals, filming)
+    if advised and told.proposals and grid.let_in == len(grid.cameras):
+        return replace(grid, advice=advise(shot, told.proposals[0], filming))
+    return grid
 
 
 def _errands(

@@ -53,6 +53,7 @@ class CameraProposal:
 
     params: the drawn variables as numbers and words, written to the take's JSON
     hidden_walls: bool [W], wild walls not drawn in this take
+    unseen: whose eyes it looks through, who is not drawn; "" for nobody
     measures: geometry measured from the track, by name (see vdsl.cinema.measures)
     """
 
@@ -64,12 +65,25 @@ class CameraProposal:
     params: dict[str, float | str]
     track: CameraTrack
     hidden_walls: NDArray[np.bool_]
+    unseen: str = ""
     measures: dict[str, float] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, eq=False)
+class Advice:
+    """Why a shot has no camera as its line says, in words, and words with which it would have some."""
+
+    why: str
+    instead: tuple[str, ...]
+
+
+@dataclass(frozen=True, eq=False)
 class ProposalGrid:
-    """S · C proposals of one shot, and how many were thrown out for which reason."""
+    """S · C proposals of one shot, and how many were thrown out for which reason.
+
+    let_in: how many of the cameras do not quite keep to the line, but nothing better was left
+    advice: where there is none that does
+    """
 
     shot: str
     subject: str | None
@@ -77,3 +91,5 @@ class ProposalGrid:
     cameras: tuple[CameraProposal, ...]
     considered: int
     rejected: dict[str, int]
+    let_in: int = 0
+    advice: Advice | None = None

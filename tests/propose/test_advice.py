@@ -1,0 +1,103 @@
+"""Where no camera has room: what is nudged, why it is told, and that what is named instead does work."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from filmset import shot, skeleton, still_story, thing, world
+
+from vdsl.lang.ir import ALL_ANGLES, SIZES, Shot
+from vdsl.propose.advice import advise
+from vdsl.propose.cameras import Filming, propose_cameras
+from vdsl.propose.drawing import draw, generator, nudged
+from vdsl.propose.types import Advice
+
+BODY = skeleton()
+
+
+def corridor(width: float = 1.2) -> Filming:
+    """Between two blocks that no camera can stand in, 12 m long."""
+    x, y = width / 2, 6.0
+    boxes = tuple((side * (x + 1.5), 0.0, 1.3, 1.5, y, 1.3, 0.0) for side in (-1, 1))
+    hall = thing(7, "back_corridor", (-x, -y, 0.0), (x, y, 2.6), kind="room")
+    return Filming(
+        world(floors=((-x, -y, x, y),), boxes=boxes, objects=(hall,), outdoor=False), {"anna": BODY}, 24.0, 0
+    )
+
+
+def cupboards() -> Filming:
+    """Somebody with a ring of cupboards around, nearly as high as she is."""
+    turns = np.arange(8) * np.pi / 4
+    boxes = tuple((1.2 * np.cos(a), 1.2 * np.sin(a), 0.85, 0.1, 0.5, 0.85, a) for a in turns)
+    around = tuple(thing(k, "tall_cupboard", (0.0, 0.0, 0.0), (1.0, 1.0, 1.7)) for k in range(8))
+    return Filming(world(boxes=boxes, objects=around), {"anna": BODY}, 24.0, 0)
+
+
+def with_words(asked: Shot, words: str) -> Shot:
+    if words in SIZES:
+        return replace(asked, scales=(words,))
+    if words in ALL_ANGLES:
+        return replace(asked, angles=(words,))
+    if words.startswith("lens "):
+        focal = float(words[5:-2])
+        return replace(asked, lens=(focal, focal))
+    return replace(asked, movements=(words,))
+
+
+def holds(advice: Advice, asked: Shot, filming: Filming) -> None:
+    """Every alternative has cameras that keep to it."""
+    assert advice.instead
+    for words in advice.instead:
+        grid = propose_cameras(with_words(asked, words), [still_story(BODY)], filming)
+        assert len(grid.cameras) > grid.let_in, words
+
+
+def test_a_corridor_is_too_narrow_and_says_how_narrow() -> None:
+    filming, asked = corridor(), shot("arc-left", "full", lens=(60.0, 80.0))
+    grid = propose_cameras(asked, [still_story(BODY)], filming)
+    assert grid.let_in == len(grid.cameras)
+    advice = advise(asked, still_story(BODY), filming)
+    assert advice.why.startswith("the back corridor is 1.2 m wide, and a full eye-level shot stands ")
+    metres = float(advice.why.split(" stands ")[1].split(" m ")[0])
+    assert 4.5 < metres < 8.0
+    holds(advice, asked, filming)
+
+
+def test_a_cupboard_in_the_way_is_named() -> None:
+    filming, asked = cupboards(), shot("static", "medium", lens=(40.0, 80.0))
+    advice = advise(asked, still_story(BODY), filming)
+    assert advice.why == "a medium eye-level shot sees the tall cupboard before anna"
+    assert "overhead" in advice.instead or "high-angle" in advice.instead
+    holds(advice, asked, filming)
+
+
+def test_where_nothing_helps_nothing_is_named() -> None:
+    block = ((0.0, 0.0, 15.0, 30.0, 30.0, 15.0, 0.0),)
+    filming = Filming(world(boxes=block), {"anna": BODY}, 24.0, 0)
+    assert advise(shot(scale="full"), still_story(BODY), filming).instead == ()
+
+
+def test_nudged_cameras_stand_beside_the_usual_ones_within_the_sizes_tolerance() -> None:
+    asked = shot("static", "medium", proposals=20)
+    rng = generator(0, "s1", "test")
+    usual = draw(asked, 1, 200, rng)
+    other = nudged(usual, rng)
+    assert np.abs(other.jitter - 0.5).max() == pytest.approx(1.25, abs=0.05)  # half way to the next azimuth
+    assert np.abs(np.log(other.reach)).max() < 0.2
+    assert (other.lens <= usual.lens).all()
+    assert other.lens.min() >= 0.0
+
+
+def test_what_the_usual_cameras_have_no_room_for_is_nudged() -> None:
+    """Rows of posts stand along the eight azimuths; there is room only between them."""
+    rows = [(a, r) for a in np.arange(8) * np.pi / 4 for r in np.arange(0.9, 4.0, 0.25)]
+    posts = tuple((r * np.cos(a), r * np.sin(a), 1.0, 0.14, 0.1 * r, 1.0, a) for a, r in rows)
+    filming = Filming(world(boxes=posts), {"anna": BODY}, 24.0, 0)
+    asked = shot("static", "medium", proposals=20)
+    grid = propose_cameras(asked, [still_story(BODY)], filming)
+    good = len(grid.cameras) - grid.let_in
+    assert good > 0
+    off = [(float(c.params["azimuth"]) + np.pi / 8) % (np.pi / 4) - np.pi / 8 for c in grid.cameras]
+    assert np.degrees(np.abs(off)).max() > 9.5  # farther off than usual cameras ever stand

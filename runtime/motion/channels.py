@@ -53,7 +53,6 @@ LATERAL = frozenset(
     {"body.side", "body.twist", "head.turn", "head.tilt", "eyes.turn", "hips.shift", "hips.turn"}
 )
 ARM = SIDED["arm"]
-FINGERS = SIDED["fingers"]
 #: Parts whose keys are weighted poses.
 POSED = ("arm", "fingers", "wield")
 _SOFT = {"arm", "body", "head", "shoulder", "hips"}

@@ -14,11 +14,6 @@ Array = NDArray[np.float64]
 MIRROR = np.array([1.0, -1.0])[:, None]
 
 
-def palm_offset(skeleton: Skeleton) -> Array:
-    """[2, 3]: from the wrist to the middle of the grip, in each hand's bind frame."""
-    return Hands(skeleton).offset[:, 0]
-
-
 class Hands:
     """Both hands of a skeleton, left first, in the bind pose.
 

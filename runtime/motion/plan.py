@@ -387,7 +387,7 @@ def _sit_or_stand(plan: Plan, task: Task, going: Going, rng: np.random.Generator
         near = np.linalg.norm((ways[0] - stand)[:, :2], axis=1) > 0.35
         ways[0] = ways[0][: int(np.max(np.nonzero(near)[0])) + 1] if near.any() else ways[0][:1]
     _travel(plan, task, np.concatenate([*ways, stand[None]]), facing, going, rng)
-    route.sit(seat, facing, SIT_TIME / task.speed)
+    route.sit(seat, SIT_TIME / task.speed)
 
 
 def _take_needed(plan: Plan, task: Task, props: dict[int, PropState]) -> None:

@@ -433,7 +433,7 @@ class Route:
         away = self.at[:2] - np.array(middle[:2])
         self.travel(None, float(np.arctan2(away[1], away[0])))
         seat = self.at[:2] - seat_distance(self.skeleton, middle[2] - self.floor) * _ahead(self.heading)
-        self.sit((float(seat[0]), float(seat[1]), middle[2]), self.heading, 0.42 * duration)
+        self.sit((float(seat[0]), float(seat[1]), middle[2]), 0.42 * duration)
         start, end = self.now, self.now + 0.58 * duration
         self.bed, self.posture, self.seat = middle[2], "lying", None
         turn = float(wrap(head + np.pi - self.heading))
@@ -475,7 +475,7 @@ class Route:
 
     # -- seats -----------------------------------------------------------------------------
 
-    def sit(self, seat: Triple, heading: float, duration: float) -> None:
+    def sit(self, seat: Triple, duration: float) -> None:
         """Down onto a seat before which one stands, by :func:`seat_distance`."""
         self._shift(np.array(seat[:2]), duration)
         self.sits.append(Sit(self.now - duration, self.now, True, seat))

@@ -53,7 +53,6 @@ class Action(DefinitionBase):
     target_kinds: tuple[str, ...] = ()
     second: str = "none"
     second_kinds: tuple[str, ...] = ()
-    travels: bool = False
     needs: str = "none"
     variants: tuple[Variant, ...] = ()
 
@@ -147,7 +146,7 @@ class SmallCatalog:
             variants = (Variant(Part((Move(move),))),) if move else ()
             also = ("character",) if name == "give" else ()
             self._all["action", name] = Action(
-                name, (), NOWHERE, target, kinds, second, also, False, needs, variants
+                name, (), NOWHERE, target, kinds, second, also, needs, variants
             )
         for name in ("woman", "man"):
             self._all["cast", name] = DefinitionBase(name, PERSON, NOWHERE)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from runtime.body.skeleton import JOINT
-from runtime.motion.hands import palm_offset
+from runtime.motion.hands import Hands
 from runtime.motion.perform import perform
 from runtime.motion.types import PropState, SceneMotion, Task
 
@@ -19,7 +19,7 @@ HEIGHTS = [1.2, 1.55, 1.72, 1.95]
 
 def palm(motion: SceneMotion, who: str, side: str, height: float) -> Array:
     body = skeleton(height, 8.0 if height < 1.4 else 32.0)
-    offset = palm_offset(body)["lr".index(side)]
+    offset = Hands(body).offset["lr".index(side), 0]
     return joint(motion, who, f"hand_{side}") + joint_rotation(motion, who, f"hand_{side}") @ offset
 
 

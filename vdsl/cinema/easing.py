@@ -5,9 +5,6 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-#: The values the paper enumerates: fast first, even, slow first.
-LAMBDAS = (0.1, 1.0, 10.0)
-
 
 def ease(t: NDArray[np.float64] | float, lam: NDArray[np.float64] | float) -> NDArray[np.float64]:
     """``w_λ(t) = (λ^t − 1)/(λ − 1)``, and ``t`` for λ = 1 (the paper's easing function, section 3.2).

@@ -7,7 +7,6 @@ left are one or two targets, the second after a word like ``to`` or ``with``. A 
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import replace
 
 from runtime.motion.manner import MANNERS
@@ -24,8 +23,6 @@ _MOST_LISTED = 30
 #: `pour jug into glass` and `pour glass from jug` are one: what is in the hand is the second target.
 _INTO = ("to", "in", "into", "on", "onto")
 _KIND_WORDS = {"place": "a place", "object": "a thing", "character": "someone"}
-
-FindTarget = Callable[[ast.Name], "Target | None"]
 
 
 class BeatReader:
@@ -56,7 +53,7 @@ class BeatReader:
             return None
         definition = self.catalog.get("action", action)
         rest = node.words[1 + used :]
-        named = self._targets(rest, action)
+        named = self._targets(rest)
         link = next((w.text for w in rest[1:] if w.text in words.PREPOSITIONS), "")
         if definition is None or named is None or character is None:
             return None
@@ -126,7 +123,7 @@ class BeatReader:
 
     # -- to what ---------------------------------------------------------------------
 
-    def _targets(self, rest: tuple[ast.Name, ...], action: str) -> list[Target] | None:
+    def _targets(self, rest: tuple[ast.Name, ...]) -> list[Target] | None:
         """The targets named; None where one was reported."""
         groups = self._split(rest)
         if groups is None:

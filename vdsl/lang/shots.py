@@ -12,6 +12,7 @@ from .diagnostics import Report
 from .ids import Ids
 from .ir import MOVEMENT_FAMILIES, Beat, Shot, Target
 from .options import ShotOptions, read_options
+from .views import read_view
 
 DEFAULT_LENS = (30.0, 80.0)  # the paper's, section 3.2
 DEFAULT_PROPOSALS = 80
@@ -55,12 +56,15 @@ def read_shots(
     for camera in cameras:
         said = read_camera(camera, defaults.rig, report)
         own = read_options(camera.options, defaults.fps, report) if camera else ShotOptions()
-        said = _fitting(camera, said, not node.beats, context.subject, report)
+        said = _fitting(camera, said, not node.beats, report)
+        view = read_view(camera, said, own.focus or shared.focus, context, report)
+        said = view.words
         base = _line_words(context)
         if len(cameras) > 1:
             base = [*base, *_camera_words(said)]
         feelings = _feelings(shared, context, node, report) | _feelings(own, context, node, report)
         shot = _shot(ids.take(base), node, camera, said, own, shared, context, defaults)
+        shot = replace(shot, focus=view.focus or shot.focus, view=said.view, whose=view.whose)
         shots.append(replace(shot, feelings=tuple(feelings.items())))
     return tuple(shots)
 
@@ -69,7 +73,6 @@ def _fitting(
     camera: ast.CameraNode | None,
     said: CameraWords,
     establishing: bool,
-    subject: Target | None,
     report: Report,
 ) -> CameraWords:
     """Free words narrowed to what suits the line: a place is shown wide, someone absent is not followed."""
@@ -110,7 +113,7 @@ def _shot(
         lens=own.lens or shared.lens or DEFAULT_LENS,
         ease=own.ease or shared.ease or tuple(sorted(set(words.EASES.values()))),
         duration=own.duration or shared.duration,
-        roll=own.roll if own.roll is not None else shared.roll or 0.0,
+        roll=next((r for r in (own.roll, shared.roll, said.lean) if r is not None), 0.0),
         focus=context.resolve(focus) if focus is not None else context.subject,
         say=own.say if own.say is not None else shared.say,
         note=own.note if own.note is not None else shared.note,
@@ -162,6 +165,7 @@ def _camera_words(said: CameraWords) -> list[str]:
             continue
         family = next((name for name, members in MOVEMENT_FAMILIES.items() if members == values), None)
         found.append(family.replace("/", "-") if family else "-".join(values))
+    found += [said.view] if said.view else []
     return found or ["free"]
 
 

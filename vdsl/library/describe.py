@@ -77,9 +77,9 @@ def describe(catalog: Catalog, kind: str, name: str) -> Row | None:
     definition = catalog.get(kind, name)
     if definition is None:
         return None
-    head = (name, kind, _about(catalog, kind, definition))
+    head = (name, kind, _about(kind, definition))
     if isinstance(definition, SetDef):
-        places = tuple(_places(definition.root, catalog))
+        places = tuple(_places(definition.root))
         return SetRow(*head, definition.time, definition.outdoor, places)
     if isinstance(definition, PropDef):
         parts = tuple(getattr(definition, "parts", ()))
@@ -142,11 +142,11 @@ def in_words(spec: ParameterSpec) -> str:
     return f"{spec.default:.4g}" + ("s" if spec.kind == "seconds" else "")
 
 
-def _places(root: SetNode, catalog: Catalog) -> Iterator[dict[str, object]]:
+def _places(root: SetNode) -> Iterator[dict[str, object]]:
     for node in root.children:
         if node.kind not in ("room", "area"):
             continue
-        things = [f"{child.name}" for child in node.children]
+        things = [child.name for child in node.children]
         yield {"name": node.name, "kind": node.kind, "spots": node.spots, "things": tuple(things)}
 
 
@@ -164,7 +164,7 @@ def tree(node: SetNode, catalog: Catalog) -> Iterator[tuple[int, str, str, tuple
         yield from walk(child, 0)
 
 
-def _about(catalog: Catalog, kind: str, definition: DefinitionBase) -> str:
+def _about(kind: str, definition: DefinitionBase) -> str:
     """The comment above a definition: its first paragraph, without the marks."""
     text = definition.span.source.text[: definition.span.start].rstrip(" \t")
     lines = text.split("\n")[:-1] if text.endswith("\n") or not text else text.split("\n")

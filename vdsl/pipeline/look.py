@@ -20,7 +20,7 @@ def look_at(path: Path, scene: str, camera: str | None, device: str = "auto") ->
     :class:`~vdsl.pipeline.trial.NoTrialError` where no camera can film it.
     """
     checked = _with_a_look(path, scene, camera or "(static wide)")
-    act = _opening(checked, scene)
+    act = _opening(checked)
     studio = Studio(checked.catalog, device, checked.storyboard.style)
     if camera is not None:
         return studio.shot(act, checked.storyboard.size), checked.report
@@ -40,7 +40,7 @@ def _with_a_look(path: Path, scene: str, camera: str) -> Checked:
     )
 
 
-def _opening(checked: Checked, scene: str) -> Act:
+def _opening(checked: Checked) -> Act:
     """The added line, in the state the scene opens with."""
     acts = stage_acts(checked)
     look = acts[-1]

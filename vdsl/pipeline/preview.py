@@ -90,7 +90,7 @@ class Studio:
 
     # -- people ------------------------------------------------------------------------------
 
-    def cast(self, names: Sequence[str], height: int = 560, turned: bool = False) -> Image.Image:
+    def cast(self, names: Sequence[str], height: int = 560) -> Image.Image:
         """A line-up; of one person a turn-around."""
         cell = (round(height * 0.46), height)
         cells: list[tuple[str, str, Image.Image]] = []

@@ -155,15 +155,6 @@ def stamp(depth: ti.template(), base, size, a, b, c):
 
 
 @ti.func
-def offset_point(basis: ti.template(), p, n, m, frame: ti.template()):
-    """Light coordinates of a point lifted off its surface by what the map's coarseness asks for."""
-    texel = 1.0 / frame[m, 2]
-    q = across(basis, p + n * (0.01 + 1.8 * texel))
-    q.z += 0.004 + 0.4 * texel
-    return q
-
-
-@ti.func
 def unblocked(q, m, frame: ti.template(), size, coarse: ti.template()):
     """Whether nothing within a block of light coordinates ``q`` can be in its light."""
     x = (q.x - frame[m, 0]) * frame[m, 2]

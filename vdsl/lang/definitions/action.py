@@ -62,7 +62,7 @@ class ActionDef(DefinitionBase):
     """An action.
 
     target, second: none, optional or required; target_kinds, second_kinds: of place, object, character
-    travels: whether it may begin with getting there; travel: one of :data:`TRAVELS`
+    travel: how one gets there first, one of :data:`TRAVELS`
     sit: down, up or keep; needs: target, second, any or none has to be in a hand
     faces: target, second or none; turn: radians to turn by without a target; along: also while walking
     posture: one of :data:`POSTURES` to take first, "" to stay as one is; posture_time: seconds for it, 0 for
@@ -78,7 +78,6 @@ class ActionDef(DefinitionBase):
     target_kinds: tuple[str, ...]
     second: str
     second_kinds: tuple[str, ...]
-    travels: bool
     travel: str
     sit: str
     needs: str
@@ -150,7 +149,7 @@ def _settings(
     posture, example = settings.get("posture"), settings.get("example")
     return ActionDef(
         definition.name.text, (), definition.span, target, kinds["target"], second, kinds["second"],
-        travel != "none", travel, word("sit", "keep", ("down", "up", "keep")),
+        travel, word("sit", "keep", ("down", "up", "keep")),
         word("needs", "none", ("none", "target", "second", "any")),
         word("faces", "none", ("none", "target", "second")), turn, "along" in settings, variants,
         posture=word("posture", "", POSTURES),

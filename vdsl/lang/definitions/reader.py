@@ -209,10 +209,6 @@ class Reader:
         fallback = (0.0,) * (size or 3) if default is None else default
         return fallback if value is None else self._as_point(value, fallback, size, want)
 
-    def value_points(self, index: int) -> tuple[tuple[float, ...], ...]:
-        value = self._value(index, None, "points")
-        return () if value is None else self._as_points(value)
-
     # -- after the "=" -------------------------------------------------------------------
 
     def bound(self) -> tuple[ast.Value, ...]:

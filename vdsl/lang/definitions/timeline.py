@@ -100,7 +100,7 @@ def read_part(entries: tuple[ast.Entry, ...], duration: float, report: Report) -
         if head == "at":
             keys.extend(_keys(reader, duration, report))
         elif head in MOVES:
-            move = _move(reader, head, duration, report)
+            move = _move(reader, head, duration)
             if move is not None:
                 moves.append(move)
         else:
@@ -182,7 +182,7 @@ def _axis_values(reader: Reader, axes: dict[str, str], place: int) -> dict[str, 
     return found
 
 
-def _move(reader: Reader, kind: str, duration: float, report: Report) -> Move | None:
+def _move(reader: Reader, kind: str, duration: float) -> Move | None:
     def when(name: str, default: float) -> float:
         return _option_time(reader, name, duration, default)
 

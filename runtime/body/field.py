@@ -11,7 +11,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.interpolate import PchipInterpolator
 
 Points = NDArray[np.float64]
 Values = NDArray[np.float64]
@@ -71,6 +70,42 @@ def round_cone(a: ArrayLike, b: ArrayLike, ra: float, rb: float, flat: ArrayLike
     return field
 
 
+def monotone(x: ArrayLike, y: ArrayLike) -> Callable[[Values], NDArray[np.float64]]:
+    """A smooth curve through points that rises and falls only where they do (Fritsch and Carlson's).
+
+    x: [K], rising; y: [K] or [K, C]. What is asked for outside of x gets the end's value.
+    """
+    x, y = np.asarray(x, float), np.asarray(y, float)
+    columns = y.reshape(len(x), -1)
+    step = np.diff(x)[:, None]
+    rise = np.diff(columns, axis=0) / step
+    slope = np.repeat(rise[:1], len(x), axis=0)
+    if len(x) > 2:
+        before, after = step[:-1] + 2 * step[1:], 2 * step[:-1] + step[1:]
+        with np.errstate(divide="ignore", invalid="ignore"):
+            mean = (before + after) / (before / rise[:-1] + after / rise[1:])
+        slope[1:-1] = np.where(rise[:-1] * rise[1:] > 0, mean, 0.0)
+        slope[0] = _end_slope(step[0], step[1], rise[0], rise[1])
+        slope[-1] = _end_slope(step[-1], step[-2], rise[-1], rise[-2])
+
+    def curve(at: Values) -> NDArray[np.float64]:
+        at = np.clip(np.asarray(at, float), x[0], x[-1])
+        k = np.clip(np.searchsorted(x, at, side="right") - 1, 0, len(x) - 2)
+        t = ((at - x[k]) / step[k, 0])[:, None]
+        low = columns[k] + t * t * (3 - 2 * t) * (columns[k + 1] - columns[k])
+        bent = t * (1 - t) * step[k] * ((1 - t) * slope[k] - t * slope[k + 1])
+        return np.asarray((low + bent).reshape(at.shape + y.shape[1:]))
+
+    return curve
+
+
+def _end_slope(near: Values, next_: Values, rise: Values, further: Values) -> Values:
+    """Slope at an end of a monotone curve, by the parabola through the last three points where that fits."""
+    slope = ((2 * near + next_) * rise - near * further) / (near + next_)
+    slope = np.where(slope * rise <= 0, 0.0, slope)
+    return np.where((rise * further <= 0) & (np.abs(slope) > 3 * np.abs(rise)), 3 * rise, slope)
+
+
 @dataclass(frozen=True)
 class Knot:
     """A cross-section of a loft.
@@ -104,7 +139,7 @@ def loft(
     )
     columns[:, :4] += grow
     grid = np.linspace(at[0], at[-1], _SAMPLES)
-    table = PchipInterpolator(at, columns, axis=0)(grid)
+    table = monotone(at, columns)(grid)
     table[:, :4] = np.maximum(table[:, :4], 1e-4)
     scale = (_SAMPLES - 1) / (at[-1] - at[0])
     slope = np.abs(np.gradient(table[:, :4], grid, axis=0)).mean(1)

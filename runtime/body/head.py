@@ -6,14 +6,14 @@ crown, X forward. :class:`Head` turns metres into head units and back.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.interpolate import PchipInterpolator
 
 from .anatomy import Figure, neck, shoulders, torso_loft
-from .field import Field, Points, Values, carve, ellipsoid, round_cone, smooth_min, union, within
+from .field import Field, Points, Values, carve, ellipsoid, monotone, round_cone, smooth_min, union, within
 
 #: Styles that fall over the ears.
 EARS_COVERED = ("bob", "long")
@@ -250,10 +250,10 @@ def on_front(shape: Field, y: Values, z: Values) -> Points:
     return np.stack([low, y, z], 1)
 
 
-def side_line(points: tuple[tuple[float, float], ...]) -> PchipInterpolator:
+def side_line(points: tuple[tuple[float, float], ...]) -> Callable[[Values], Values]:
     """A curve z(x) through points of falling x, as hairlines are drawn."""
     ordered = sorted(points)
-    return PchipInterpolator([x for x, _ in ordered], [z for _, z in ordered], extrapolate=False)
+    return monotone([x for x, _ in ordered], [z for _, z in ordered])
 
 
 def with_neck(head: Head) -> Field:

@@ -37,17 +37,19 @@ def compile(
     rank: str = "discriminator",
     weights: Path | None = None,
     burn_in: bool = False,
+    edit: bool = False,
 ) -> Result:
     """Compile a script into a folder of videos (default ``build/<name>``).
 
     settings: what wins over the script's header lines; device: auto, cpu, cuda or vulkan; rank:
-    discriminator or geometry. Raises :class:`ScriptError`, OSError or :class:`ranker.RankerError`.
+    discriminator or geometry; edit: choose takes for the sequence
+    Raises :class:`ScriptError`, OSError or :class:`ranker.RankerError`.
     """
     # Only now: parsing and checking must not wait for numpy, torch and taichi.
     from .pipeline.compile import compile_file
     from .pipeline.options import Options
 
-    return compile_file(path, out, Options(settings or Settings(), device, rank, weights, burn_in))
+    return compile_file(path, out, Options(settings or Settings(), device, rank, weights, burn_in, edit))
 
 
 __all__ = [

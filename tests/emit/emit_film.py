@@ -7,8 +7,9 @@ from pathlib import Path
 
 import numpy as np
 
+from vdsl.cinema.continuity import Finding
 from vdsl.cinema.track import CameraTrack
-from vdsl.emit.types import CUT, Build, BuiltShot, BuiltTake, Subject
+from vdsl.emit.types import CUT, Build, BuiltShot, BuiltTake, CutFinding, Subject, Trade
 from vdsl.emit.video import write_take
 from vdsl.lang.ir import Beat, Character, Scene, Shot, Storyboard, StoryLine, Target, Transition
 from vdsl.lang.source import Source, Span
@@ -54,7 +55,7 @@ def take(folder: Path, name: str, rank: int, frames: int, shade: int) -> BuiltTa
     measures = {"visibility": 0.98, "headroom": float("nan"), "clearance": 1 / 3}
     camera = CameraProposal(
         7 * rank, rank - 1, "push", "medium", "eye-level", {"r": 1 / 3, "lambda": 10.0, "easing": "slow-in"},
-        track(frames), np.zeros(0, bool), measures,
+        track(frames), np.zeros(0, bool), measures=measures,
     )  # fmt: skip
     subject = Subject("anna", 1.68, np.zeros((frames, 3)))
     media = write_take(folder, name, rank, pictures(frames, shade), frames, FPS)
@@ -80,8 +81,19 @@ def built(
     )
 
 
-def film(shots: Sequence[BuiltShot], title: str = "Morning coffee") -> Build:
+def crossing(before: str, after: str) -> CutFinding:
+    """The first cut, over the line."""
+    found = Finding("line", 41.2, {"before": 30.0, "after": -41.2}, "crosses the line by 41° (anna–ben)")
+    return CutFinding((before, after), (1, 2), found)
+
+
+def film(
+    shots: Sequence[BuiltShot],
+    title: str = "Morning coffee",
+    continuity: tuple[CutFinding, ...] = (),
+    trades: tuple[Trade, ...] = (),
+) -> Build:
     scene = Scene("kitchen", "apartment", ("kitchen",), "day", (), SPAN)
     anna = Character("anna", "woman", (), SPAN)
     board = Storyboard(title, FPS, SIZE, 7, "cinema", "board", (anna,), (scene,), (), "story.vds")
-    return Build(board, tuple(shots))
+    return Build(board, tuple(shots), continuity=continuity, edited=bool(trades), trades=trades)

@@ -15,7 +15,7 @@ from vdsl.cinema.measures import MEASURES
 from vdsl.emit.build import write_build
 from vdsl.emit.documents import dump, rounded
 from vdsl.emit.report_json import report_document, write_report
-from vdsl.emit.types import RunReport, Stage
+from vdsl.emit.types import RunReport, Stage, Trade
 from vdsl.lang.ir import Transition
 
 DOCS = Path(__file__).parents[2] / "docs" / "output.md"
@@ -34,9 +34,12 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def film(path: Path) -> Any:
     two = f.line(("anna", "give", "cup", "ben"), ("ben", "wave"))
-    return f.film(
-        [f.built(path, "s1", story=two, say="Hi"), f.built(path, "s2", 14, 150, Transition("dissolve", 0.25))]
-    )
+    shots = [
+        f.built(path, "s1", story=two, say="Hi"),
+        f.built(path, "s2", 14, 150, Transition("dissolve", 0.25)),
+    ]
+    trades = (Trade("s2", 2, 3, 0.81, 0.86, ("line", "jump")),)
+    return f.film(shots, continuity=(f.crossing("s1", "s2"),), trades=trades)
 
 
 def read(path: Path) -> Any:
@@ -65,6 +68,26 @@ def test_storyboard_tells_the_story(folder: Path) -> None:
     assert second["enter"] == first["leave"] == {"kind": "dissolve", "frames": 6}
     assert first["takes"][0]["measures"] == {"clearance": 0.333333, "headroom": None, "visibility": 0.98}
     assert first["rejected"] == {"hidden": 2, "wall": 5}
+
+
+def test_storyboard_tells_what_cuts_break_and_what_was_traded(folder: Path) -> None:
+    board = read(folder / "storyboard.json")
+    (found,) = board["continuity"]
+    assert (found["rule"], found["severity"], found["cut"], found["shots"]) == (
+        "line",
+        "fault",
+        [1, 2],
+        ["s1", "s2"],
+    )
+    assert (found["degrees"], found["text"]) == (41.2, "cut 1→2 crosses the line by 41° (anna–ben)")
+    (trade,) = board["trades"]
+    assert board["edited"] is True
+    assert trade["text"] == (
+        "shot 2: take 3 instead of 1 (score 0.81 instead of 0.86) keeps the line and avoids a jump cut"
+    )
+    page = (folder / "index.html").read_text("utf-8")
+    assert found["text"] in page
+    assert trade["text"] in page
 
 
 def test_track_holds_the_camera_in_metres_and_degrees(folder: Path) -> None:
@@ -112,6 +135,7 @@ def fields(value: Any, prefix: str = "") -> set[str]:
     free = (
         "params",
         "measures",
+        "numbers",
         "rejected",
         "versions",
         "movements",

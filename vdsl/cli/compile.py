@@ -63,6 +63,9 @@ def compile_command(
     burn_in: Annotated[
         bool, typer.Option("--burn-in", help="Write shot, take, timecode, lens and movement on every frame.")
     ] = False,
+    edit: Annotated[
+        bool, typer.Option("--edit", help="Choose takes for the sequence, so that cuts keep to the rules.")
+    ] = False,
     format: Annotated[Format, typer.Option(help="How to print what is found wrong.")] = Format.text,
 ) -> None:
     """Turn a storyboard into ranked moving shots.
@@ -81,7 +84,7 @@ def compile_command(
     check_or_exit(file, format.value, settings, quiet_warnings=True)
     if not file.is_file():  # a pipe is empty by now, and the check was only the first reading
         stop(f"{file} is no ordinary file; save the storyboard first", USAGE)
-    _run(file, out, settings, rank.value, weights, device.value, burn_in, format.value)
+    _run(file, out, settings, rank.value, weights, device.value, burn_in, edit, format.value)
 
 
 def _run(
@@ -92,6 +95,7 @@ def _run(
     weights: Path | None,
     device: str,
     burn_in: bool,
+    edit: bool,
     format: str,
 ) -> None:
     # Only now: --help and scripts with errors must not wait for numpy, torch and taichi.
@@ -103,7 +107,7 @@ def _run(
     from .outcome import print_outcome
     from .progress import Bars
 
-    options = Options(settings, device, rank, weights, burn_in)
+    options = Options(settings, device, rank, weights, burn_in, edit)
     console = Console(stderr=True)
     with failures_told(file, format), Bars(console) as bars:
         result = compile_file(file, out, options, bars)

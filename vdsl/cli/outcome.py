@@ -8,6 +8,7 @@ from pathlib import Path
 from rich.console import Console
 from rich.table import Table
 
+from ..emit.types import Build
 from ..emit.words import camera_words
 from ..pipeline.compile import Result
 from .show import as_json, count, print_report, printable, write_line
@@ -28,9 +29,24 @@ def print_outcome(result: Result, format: str, file: Path) -> None:
     film = f"{frames * den / num:.1f} s of film in {result.report.seconds:.0f} s"
     made = f"{count(len(shots), 'shot')}, {count(takes, 'take')}, {film}"
     write_line(made, sys.stdout)
+    for text in _cutting(result.build):
+        write_line(printable(text), sys.stdout)
     for name in ("index.html", "animatic.mp4", "sheet.png"):
         if (result.folder / name).exists():
             write_line(printable(str(result.folder / name)), sys.stdout)
+
+
+def _cutting(build: Build) -> list[str]:
+    """What the edit traded, and how many rules the cuts break."""
+    hints = sum(c.finding.severity == "hint" for c in build.continuity)
+    faults = len(build.continuity) - hints
+    counts = [count(n, word) for n, word in ((faults, "continuity fault"), (hints, "continuity hint")) if n]
+    lines = [trade.text for trade in build.trades]
+    if counts:
+        more = "" if build.edited else "; --edit chooses takes that cut together"
+        at = count(len({c.cut for c in build.continuity}), "cut")
+        lines.append(f"{' and '.join(counts)} at {at}{more}")
+    return lines
 
 
 def _table(result: Result) -> Table:

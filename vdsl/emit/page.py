@@ -31,12 +31,15 @@ def page_html(build: Build) -> str:
     document = storyboard_document(build)
     for shot in document["shots"]:
         shot["length"] = seconds_words(shot["frames"], board.fps)
+        shot["cuts"] = [c.text for c in build.into(shot["id"])]
+        shot["traded"] = next((t.text for t in build.trades if t.shot == shot["id"]), "")
         shot["timecode"] = timecode(shot["start"], board.fps) if shot["start"] is not None else ""
     return _template().render(
         board=document,
         statistics=statistics(build),
         length=seconds_words(film_frames(build), board.fps),
         shown=bool(build.shown),
+        broken=len({c.cut for c in build.continuity}),
         poster=next((s["takes"][0]["poster"] for s in document["shots"] if s["takes"]), ""),
     )
 

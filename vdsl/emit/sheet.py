@@ -22,6 +22,7 @@ SHOTS_PER_SHEET = 30
 WIDTH, MARGIN, TEXT, GAP = 1800, 48, 372, 10
 PAPER, INK, QUIET, RULE, ACCENT = "#f6f3ec", "#1b1c1f", "#6f6a61", "#d9d3c6", "#b3392b"
 HEAD = 150
+_NOTE = 24  # height of a line on what a cut breaks
 
 
 def write_sheets(folder: Path, build: Build) -> list[Path]:
@@ -42,7 +43,7 @@ def draw_sheet(build: Build, shots: tuple[BuiltShot, ...], first: int, page: tup
     """One sheet of consecutive shots; ``first`` is the index of the first, ``page`` (number, count)."""
     cell_w = (WIDTH - 2 * MARGIN - TEXT - 2 * GAP) // 3
     cell_h = max(60, round(cell_w * build.storyboard.size[1] / build.storyboard.size[0]))
-    row = max(cell_h, 196) + 40
+    row = max(cell_h, 196) + 40 + _NOTE * any(build.into(built.shot.id) for built in shots)
     image = Image.new("RGB", (WIDTH, HEAD + row * max(1, len(shots)) + MARGIN // 2), PAPER)
     draw = ImageDraw.Draw(image)
     _draw_head(draw, build, page)
@@ -51,6 +52,7 @@ def draw_sheet(build: Build, shots: tuple[BuiltShot, ...], first: int, page: tup
         draw.line([(MARGIN, top), (WIDTH - MARGIN, top)], fill=RULE, width=2)
         _draw_words(draw, build, built, first + i + 1, top + 18)
         _draw_keys(image, draw, built, (MARGIN + TEXT, top + 20), (cell_w, cell_h))
+        _draw_cuts(draw, build, built, top + row - _NOTE - 10)
     return image
 
 
@@ -87,6 +89,13 @@ def _draw_words(draw: ImageDraw.ImageDraw, build: Build, built: BuiltShot, numbe
     y += 8
     lettering.write(draw, (MARGIN, y), lettering.shortened(camera_words(built), 18, room), 18, ACCENT)
     lettering.write(draw, (MARGIN, y + 26), _facts(build, built), 15, QUIET)
+
+
+def _draw_cuts(draw: ImageDraw.ImageDraw, build: Build, built: BuiltShot, top: float) -> None:
+    """What the cut into the shot breaks, below its pictures."""
+    words = "   ·   ".join(c.text for c in build.into(built.shot.id))
+    room = WIDTH - 2 * MARGIN - TEXT
+    lettering.write(draw, (MARGIN + TEXT, top), lettering.shortened(words, 16, room), 16, ACCENT)
 
 
 def _facts(build: Build, built: BuiltShot) -> str:

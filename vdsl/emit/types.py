@@ -147,6 +147,10 @@ class Build:
     edited: bool = False
     trades: tuple[Trade, ...] = ()
 
+    def into(self, shot: str) -> tuple[CutFinding, ...]:
+        """What the cut into a shot breaks."""
+        return tuple(c for c in self.continuity if c.shots[1] == shot)
+
     @property
     def shown(self) -> tuple[BuiltShot, ...]:
         """The shots that have a take, in order: what the animatic shows."""

@@ -31,6 +31,7 @@ from ..propose.story import advance, propose
 from ..propose.types import CameraProposal, ProposalGrid, StoryProposal
 from ..stage.assemble import StagedScene
 from ..stage.models import check_models
+from .edit import Edited, Reel, candidates, cut_findings, edited
 from .filming import Camerawork
 from .judging import DiscriminatorJudge, GeometryJudge, Judge
 from .options import Options
@@ -84,13 +85,11 @@ def compile_file(
         checked = _with_something_to_film(load_storyboard(path, options.settings))
     with staged_build(folder) as staging:
         acts = _stage_all(checked, clock)
-        judge = _judge(options, clock)
-        shots = tuple(_film_all(checked.storyboard, acts, judge, options, staging, clock))
-        _warn_of_empty_shots(shots, checked.report)
-        build = Build(checked.storyboard, shots, judge.name)
-        with clock.spent("write", len(shots), quiet=True):
+        build = _film_all(checked.storyboard, acts, _judge(options, clock), options, staging, clock)
+        _warn_of_empty_shots(build.shots, checked.report)
+        with clock.spent("write", len(build.shots), quiet=True):
             write_build(staging, build)
-        report = _report(perf_counter() - started, clock, options)
+        report = _report(perf_counter() - started, clock, options, tuple(t.text for t in build.trades))
         write_report(staging / "report.json", report)
     return Result(folder, build, checked.report, report)
 
@@ -165,27 +164,51 @@ def _judge(options: Options, clock: StageClock) -> Judge:
 
 def _film_all(
     storyboard: Storyboard, acts: list[Act], judge: Judge, options: Options, folder: Path, clock: StageClock
-) -> Iterator[BuiltShot]:
+) -> Build:
     """Propose, judge and film every shot, in order; one line's proposals are in memory at a time."""
     camerawork = Camerawork(options.device)
-    shots = [shot for act in acts for shot in act.line.shots]
-    clock.begin("propose", sum(s.proposals for s in shots), _UNITS["propose"])
-    start = 0
-    for act in acts:
-        joined = False  # the first shot of the line that has a take joins it to the last line
-        for shot in act.line.shots:
-            with clock.spent("propose", shot.proposals):
-                grid = propose(act.line, shot, act.state, act.filming)
+    plan = _edit(acts, judge, camerawork, clock) if options.edit else None
+    reel, film, start = Reel(), list[BuiltShot](), 0
+    joined: StoryLine | None = None  # the first shot of a line that has a take joins it to the last line
+    for act, shot, grid in _proposed(acts, clock):
+        if plan is None:
             scores = _scores(grid, act, shot, judge, camerawork, clock)
-            run = (storyboard, options, folder, start)
-            takes = tuple(
-                _film(rank, i, scores, grid, act, shot, judge, camerawork, run, clock)
-                for rank, i in enumerate(choose_takes(grid.cameras, scores, shot.takes), start=1)
-            )
-            built = _built(grid, act.line, shot, storyboard, takes, first=not joined)
-            joined = joined or bool(takes)
-            start += built.frames
-            yield built
+            chosen = choose_takes(grid.cameras, scores, shot.takes)
+        else:
+            scores, chosen = plan.scores[shot.id], plan.takes[shot.id]
+        reel.add(act.line, shot, grid, scores, chosen[:1], act.filming)
+        run = (storyboard, options, folder, start)
+        takes = tuple(
+            _film(rank, i, scores, grid, act, shot, judge, camerawork, run, clock)
+            for rank, i in enumerate(chosen, start=1)
+        )
+        film.append(_built(grid, act.line, shot, storyboard, takes, first=joined is not act.line))
+        joined = act.line if takes else joined
+        start += film[-1].frames
+    continuity = cut_findings(reel.slots, [0] * len(reel.slots))
+    trades = plan.trades if plan else ()
+    return Build(storyboard, tuple(film), judge.name, continuity, options.edit, trades)
+
+
+def _edit(acts: list[Act], judge: Judge, camerawork: Camerawork, clock: StageClock) -> Edited:
+    """Propose and judge every shot, and choose takes for the sequence; only scores and edges are kept."""
+    reel, scores, takes = Reel(), dict[str, NDArray[np.float64]](), dict[str, list[int]]()
+    for act, shot, grid in _proposed(acts, clock):
+        scores[shot.id] = found = _scores(grid, act, shot, judge, camerawork, clock)
+        takes[shot.id] = choose_takes(grid.cameras, found, shot.takes)
+        reel.add(act.line, shot, grid, found, candidates(grid.cameras, found, shot.takes), act.filming)
+    with clock.spent("edit", len(reel.slots), quiet=True):
+        return edited(reel.slots, scores, takes)
+
+
+def _proposed(acts: list[Act], clock: StageClock) -> Iterator[tuple[Act, Shot, ProposalGrid]]:
+    """Every shot in order, with what is proposed for it."""
+    shots = [(act, shot) for act in acts for shot in act.line.shots]
+    clock.begin("propose", sum(s.proposals for _, s in shots), _UNITS["propose"])
+    for act, shot in shots:
+        with clock.spent("propose", shot.proposals):
+            grid = propose(act.line, shot, act.state, act.filming)
+        yield act, shot, grid
 
 
 def _scores(
@@ -289,12 +312,12 @@ def _warn_of_empty_shots(shots: tuple[BuiltShot, ...], report: Report) -> None:
             )
 
 
-def _report(seconds: float, clock: StageClock, options: Options) -> RunReport:
+def _report(seconds: float, clock: StageClock, options: Options, notes: tuple[str, ...]) -> RunReport:
     stages = tuple(
         Stage(name, spent, clock.units.get(name, 0), _UNITS.get(name, ""))
         for name, spent in clock.seconds.items()
     )
-    return RunReport(seconds, stages, peak_mib=peak_mib(), device=options.device)
+    return RunReport(seconds, stages, peak_mib=peak_mib(), device=options.device, notes=notes)
 
 
 def peak_mib() -> float:

@@ -18,6 +18,7 @@ class Options:
     settings: what wins over the script's header lines
     device: where pictures are drawn; rank: who judges; weights: the discriminator's, None for the shipped
     burn_in: write shot, take, timecode, frame, lens and movement on every frame
+    edit: choose the first takes for the sequence, so that cuts keep to the rules
     """
 
     settings: Settings = field(default_factory=Settings)
@@ -25,6 +26,7 @@ class Options:
     rank: str = "discriminator"
     weights: Path | None = None
     burn_in: bool = False
+    edit: bool = False
 
     def __post_init__(self) -> None:
         if self.rank not in JUDGES:

@@ -150,7 +150,7 @@ class Performer:
         if low.any:  # the hip joints stay over the root, however the trunk lies
             above = bind[0][2] - bind[JOINT["thigh_l"]][2]
             xy = xy + (above * low.share * np.sin(low.pitch))[:, None] * ahead
-        pitch, spine_lean = pitch + low.pitch, spine_lean + low.lean
+        pitch, spine_lean = pitch + low.pitch, spine_lean + low.lean + low.balance
         root = np.concatenate([xy, z[:, None]], axis=1)
         up = (
             c.pair("shoulder", "up")
@@ -164,13 +164,18 @@ class Performer:
             (up, c.pair("shoulder", "forward") + self.feeling["rounded"] + style.forward),
         )  # fmt: skip
         talk = self.speech
-        self.head = (
+        turn = (
             self.look.head_turn - 0.5 * (spine_twist - self.look.chest_twist - twist) + self.turning
-            + c["head.turn"] - 0.8 * pelvis_turn + style.loll[0],
-            self.look.head_nod - np.clip(bowed, -0.4, 0.55) + self.nodding + c["head.nod"] + talk.nod
+            + c["head.turn"] - 0.8 * pelvis_turn + style.loll[0]
+        )  # fmt: skip
+        turn = np.clip(turn, -1.3, 1.3)
+        level = np.clip(bowed, -0.4, 0.55)  # the head stays upright on a bowed trunk, wherever it is turned
+        self.head = (
+            turn,
+            self.look.head_nod - level * np.cos(turn) + self.nodding + c["head.nod"] + talk.nod
             + self.feeling["nod"] + style.nod + low.nod,
             self.tilting + c["head.tilt"] + talk.tilt - 0.5 * spine_side + self.feeling["tilt"]
-            + style.loll[1],
+            + style.loll[1] + level * np.sin(turn),
         )  # fmt: skip
         fig.head(*self.head)
         self._set_legs(ankle, toes, bind)
@@ -260,7 +265,7 @@ class Performer:
 
     def _set_legs(self, ankle: Array, toes: Array, bind: Array) -> None:
         yaw = unwrapped(self.feet.place[..., 2])
-        spread = 0.10 + 0.12 * self.sitting + self.channels["knees.spread"]
+        spread = 0.10 + 0.02 * self.sitting + self.channels["knees.spread"]
         hanging = 0.35 * np.clip(self._dangle() / 0.1, 0, 1) * self.sitting
         pitch = self.feet.pitch + self.channels.pair("foot", "pitch") + hanging
         hips = self.figure.hip_joints()
@@ -297,6 +302,7 @@ class Performer:
             + 0.18 * sit
             + 0.85 * self.bent
             + self.low.swing
+            + 1.4 * self.low.balance
             + self.style.fling
         )
         out = 0.17 + 0.05 * run + 0.5 * self.arm_noise[::-1] + 0.05 * sit + 0.02 * self.breath

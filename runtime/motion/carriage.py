@@ -25,6 +25,7 @@ class Low:
     tilt: of the trunk, forward; looks: how far down "ahead" is for the eyes (on hands and knees one looks up)
     hip: height of the hip joints in the world; poles: [2, T, 3], where knees point, in the world
     palms: share of postures with planted palms, and how high; knees: share with hands resting on the knees
+    balance: how far the trunk leans forward on top between standing and the floor
     """
 
     def __init__(self, route: Route, t: Array, yaw: Array) -> None:
@@ -41,6 +42,7 @@ class Low:
         self.pitch, self.lean, self.nod, self.swing = (mixed(v) for v in ("pitch", "lean", "nod", "swing"))
         self.tilt = self.pitch + self.lean
         self.looks = np.where(self.tilt < 0.0, self.tilt, 0.25 * self.tilt)
+        self.balance = _balance(route.stances, t)
         beds = [s.ground for s in route.stances]
         bed = beds[-1] if beds else 0.0
         self.hip = mixed("hip") + self.share * bed
@@ -70,6 +72,20 @@ def _mix(stances: list[Stance], t: Array) -> tuple[list[str], list[Array]]:
         names.append(stance.name)
         weights.append(share)
     return names, weights
+
+
+def _balance(stances: list[Stance], t: Array) -> Array:
+    """How far forward the trunk leans on top [T] while one slowly sits down on the floor or gets up from it:
+    over the feet, as long as they carry."""
+    out, before = np.zeros(len(t)), "standing"
+    for stance in stances:
+        takes = stance.end - stance.start
+        if {before, stance.name} == {"standing", "floor"} and takes > 1.3:
+            first, last = stance.start + 0.05 * takes, stance.end - 0.05 * takes
+            middle = 0.5 * (first + last)
+            out = out + 0.7 * plateau(t, first, middle - 0.05 * takes, middle + 0.05 * takes, last)
+        before = stance.name
+    return out
 
 
 class Style:

@@ -79,6 +79,8 @@ def _errand(
     second = _point(beat.second, state, actor.position, skeletons)
     if second is not None and _puts(clip):
         second = replace(second, position=on_top_of(beat.second, state) or second.position)
+    elif _puts(clip) and actor.held:
+        beat, second = _somewhere_to_put(beat, target, state)
     if clip.needs == "second" and second is None and not actor.held:
         beat, second = _something_to_pour(beat, target, state)
     if clip.seat == "down":
@@ -124,6 +126,34 @@ def _errand(
 
 def _with_ways(task: Task, found: list[Way], stop: Stop) -> Errand:
     return Errand(task, tuple(path for path, _ in found), stop, tuple(doors for _, doors in found))
+
+
+def _somewhere_to_put(
+    beat: Beat, target: TargetPoint | None, state: SceneState
+) -> tuple[Beat, TargetPoint | None]:
+    """The nearest table as the beat's second target, for what is put down where no place is named: if it
+    came from farther off than one can reach from here."""
+    actor = state.actors[beat.character]
+    thing = target.object if target is not None else actor.held[-1][1]
+    x, y, floor = actor.position
+    home = state.props[thing].stands if thing in state.props else None
+    near_home = home is not None and math.hypot(home[0] - x, home[1] - y) <= 1.25
+    if near_home or thing not in {held for _, held in actor.held}:
+        return beat, None
+    reach = 4.0 if actor.posture == "standing" else 1.0
+    best: Target | None = None
+    for item in state.world.objects:
+        top = item.spot("top")
+        if top is None or item.id in state.props or not 0.3 < top.position[2] - floor < 1.3:
+            continue
+        away = math.hypot(top.position[0] - x, top.position[1] - y)
+        if away < reach and item.path[: len(state.room)] == state.room:
+            best, reach = object_target(item), away
+    return (
+        (beat, None)
+        if best is None
+        else (replace(beat, second=best), target_point(best, state, actor.position))
+    )
 
 
 def _puts(clip: ActionClip) -> bool:

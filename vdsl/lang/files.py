@@ -64,7 +64,7 @@ def used_scripts(script: ast.Script, report: Report) -> tuple[ast.Script, ...]:
         for statement in current.statements:
             if not isinstance(statement, ast.Use):
                 continue
-            path = _inside(statement.path, base, folder, report)
+            path = inside_folder(statement.path, base, folder, "VDS016", report)
             if path is None or path in seen:
                 continue
             seen.add(path)
@@ -75,13 +75,16 @@ def used_scripts(script: ast.Script, report: Report) -> tuple[ast.Script, ...]:
     return tuple(found)
 
 
-def _inside(written: ast.Text, base: Path, folder: Path, report: Report) -> Path | None:
-    """The path a ``use`` names, if it stays inside the project's folder."""
+def inside_folder(written: ast.Text, base: Path, folder: Path, code: str, report: Report) -> Path | None:
+    """The path that is written, seen from ``base``, if it stays inside the project's folder (resolved).
+
+    code: of what is said about a path that is none
+    """
     try:
         path = (base / written.value).resolve()
         inside = path.is_relative_to(folder) and not Path(written.value).is_absolute()
     except (OSError, ValueError, RuntimeError):
-        report.error("VDS016", written.span, label="this is no usable path")
+        report.error(code, written.span, label="this is no usable path")
         return None
     if not inside:
         report.error(

@@ -18,6 +18,7 @@ from runtime.formats.outline import FIGURES, MODELS, MOTIONS, Outline, outline
 
 from .. import ast
 from ..diagnostics import Report, listing, nearest
+from ..files import inside_folder
 from ..source import Span
 from .action import ActionDef, read_action
 from .cast import CastDef, read_cast
@@ -124,20 +125,13 @@ def _values(definition: DefinitionBase) -> dict[str, Any]:
 def _located(definition: ast.FileDefinition, folder: Path, report: Report) -> Path | None:
     """The file a definition names: inside the project's folder, there, and of a kind that is read."""
     written, base = definition.path, Path(definition.path.span.source.name).parent
-    try:
-        path = (base / written.value).resolve()
-        inside = path.is_relative_to(folder.resolve()) and not Path(written.value).is_absolute()
-        there = inside and path.is_file()
-    except (OSError, ValueError, RuntimeError):
-        report.error("VDS200", written.span, label="this is no usable path")
+    path = inside_folder(written, base, folder.resolve(), "VDS200", report)
+    if path is None:
         return None
-    if not inside:
-        report.error(
-            "VDS015",
-            written.span,
-            label="this path leaves the project's folder",
-            help=f"files are looked for inside {folder.resolve()}",
-        )
+    try:
+        there = path.is_file()
+    except OSError:
+        report.error("VDS200", written.span, label="this is no usable path")
         return None
     endings = ENDINGS[definition.kind]
     if path.suffix.lower() not in endings:

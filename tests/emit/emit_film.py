@@ -14,7 +14,7 @@ from vdsl.emit.video import write_take
 from vdsl.lang.ir import Beat, Character, Scene, Shot, Storyboard, StoryLine, Target, Transition
 from vdsl.lang.source import Source, Span
 from vdsl.propose.promise import Achieved
-from vdsl.propose.types import CameraProposal
+from vdsl.propose.types import Advice, CameraProposal
 
 SIZE, FPS = (128, 72), (24, 1)
 SPAN = Span(Source("story.vds", "x"), 0, 1)
@@ -77,7 +77,16 @@ def built(
     story = story or line(("anna", "walk", "counter"))
     made = tuple(take(folder, name, k + 1, frames, shade) for k in range(takes))
     return BuiltShot(
-        shot(name, **said), story, "kitchen", transition, made, 4, 20, 80, {"wall": 5, "hidden": 2}
+        shot(name, **said),
+        story,
+        "kitchen",
+        transition,
+        made,
+        4,
+        20,
+        80,
+        {"wall": 5, "hidden": 2},
+        Advice("the hall is 1.2 m wide", ("medium", "lens 24mm")),
     )
 
 

@@ -122,6 +122,9 @@ def _lines(document: dict[str, Any], take: int | None) -> Iterable[str]:
     if not document["takes"]:
         yield "no take: every proposal was rejected"
     yield ""
+    if document["advice"]:
+        instead = listing(f"`{words}`" for words in document["advice"]["instead"])
+        yield f"no camera does quite what the line says: {document['advice']['why']}; try {instead}"
     if document["rejected"]:
         reasons = (f"{n} {why.replace('_', ' ')}" for why, n in document["rejected"].items())
         yield f"rejected before judging: {', '.join(reasons)}"

@@ -80,6 +80,7 @@ def _shot(built: BuiltShot, place: Placed | None) -> dict[str, Any]:
         "camera_proposals": built.camera_proposals,
         "proposals": built.proposals,
         "rejected": dict(sorted(built.rejected.items())),
+        "advice": {"why": built.advice.why, "instead": list(built.advice.instead)} if built.advice else None,
         "takes": [_take(shot.id, t) for t in built.takes],
     }
 

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from ..cinema.continuity import Finding
 from ..lang.ir import Shot, Storyboard, StoryLine, Transition
 from ..propose.promise import Achieved
-from ..propose.types import CameraProposal
+from ..propose.types import Advice, CameraProposal
 
 CUT = Transition("cut", 0.0)
 
@@ -67,6 +67,7 @@ class BuiltShot:
     transition: how this shot joins the one before; only the first shot of a line has one other than a cut
     story_proposals, camera_proposals, proposals: S, C and how many were judged
     rejected: proposals thrown out before judging, by reason
+    advice: where no camera does what the line says, why, and what would
     """
 
     shot: Shot
@@ -78,6 +79,7 @@ class BuiltShot:
     camera_proposals: int
     proposals: int
     rejected: dict[str, int]
+    advice: Advice | None = None
 
     @property
     def frames(self) -> int:

@@ -298,6 +298,21 @@ CODES: dict[str, Code] = {
         "rig paper\n\n(anna walk) / (static cowboy eye-level)",
         "rig paper\n\n(anna walk) / (static medium eye-level)",
     ),
+    "VDS047": Code(
+        "somebody is missing in the view",
+        "`ots NAME` looks over somebody's shoulder at the focus, `pov NAME` through somebody's eyes, a `two-shot` "
+        "shows two. Unless said, it is the two of the line: over the shoulder of the one who is acted on at the "
+        "one who acts, through the eyes of the one who acts.",
+        "(anna wave) / (static medium ots)",
+        "(anna wave) / (static medium ots ben)",
+    ),
+    "VDS048": Code(
+        "not through somebody's eyes",
+        "A point of view stands where the eyes are and looks where they look: it is static or follows, and its "
+        "angle is what it is.",
+        "(anna look at ben) / (arc medium pov)",
+        "(anna look at ben) / (follow medium pov)",
+    ),
     # -- options -----------------------------------------------------------------------------
     "VDS050": Code(
         "unknown option",
@@ -638,12 +653,51 @@ CODES: dict[str, Code] = {
     "VDS190": Code(
         "no camera could film this",
         "Every proposed camera stood in a wall or a thing, did not see its subject, or did not keep to the words of "
-        "its line. The message counts why. The shot is left out of the build.",
+        "its line. The message says what is in the way and counts why; the shot is left out of the build. What the "
+        "help names has been tried: there is a camera for each.",
     ),
     "VDS191": Code(
         "nothing to film",
         "A file that only defines sets, props, cast or actions can be checked, but there is no story in it to make "
         "a film of.",
+    ),
+    "VDS192": Code(
+        "no camera does quite what this says",
+        "Cameras have room, but none keeps to all the words of its line and sees its subject well. The least bad ones "
+        "are offered. What the help names has been tried: there is a good camera for each.",
+    ),
+    # -- cutting shots together (VDS280-289) ---------------------------------------------------
+    "VDS280": Code(
+        "a cut crosses the line",
+        "Two people who have to do with each other have a line between them, and somebody who goes somewhere has "
+        "one along the way. As long as all cameras stay on one side of it, left stays left and right stays right. "
+        "A cut to the other side puts everybody where the other one was. The degrees say how far beyond the line "
+        "the second camera stands; cameras within ten degrees of it take no side.\n\n"
+        "`vdsc compile --edit` chooses takes from one side where there are any.",
+    ),
+    "VDS281": Code(
+        "a cut turns the screen direction",
+        "Somebody who leaves one picture going to the right and goes on the same way in the next one should still "
+        "go to the right; otherwise they seem to have turned round.",
+    ),
+    "VDS282": Code(
+        "a cut breaks the eyeline",
+        "When two people who look at each other are shown one after the other, one looks to the right and the other "
+        "to the left. Where both look the same way, they seem to look at somebody else.",
+    ),
+    "VDS283": Code(
+        "a jump cut",
+        "The same subject twice in a row, from nearly the same side and nearly as large, seems to jump rather than "
+        "to be seen anew. Another view is at least thirty degrees aside, or a size closer or farther away.",
+        "(anna walk door) / (static medium eye-level)\n(anna wave) / (static medium eye-level)",
+        "(anna walk door) / (static full eye-level)\n(anna wave) / (static medium eye-level)",
+    ),
+    "VDS284": Code(
+        "a leap in size",
+        "From very wide to very close on the same subject in one cut is strong. That may be meant; otherwise a size "
+        "between the two leads the eye.",
+        "/ (static wide eye-level) focus anna\n(anna wave) / (static extreme-close-up eye-level)",
+        "/ (static wide eye-level) focus anna\n(anna wave) / (static medium eye-level)",
     ),
     # -- what opens, and floors at heights (VDS240-259) --------------------------------------
     "VDS240": Code(

@@ -23,7 +23,7 @@ def facts_in_memory(checked: Checked, wanted: str) -> ShotFacts:
     Raises ScriptError where a line before it cannot be played.
     """
     act, line, shot = _staged(checked, wanted)
-    grid = propose(line, shot, act.state, act.filming)
+    grid = propose(line, shot, act.state, act.filming, advised=True)
     judge = GeometryJudge()
     scores = judge.scores(grid.cameras, None)
     chosen = choose_takes(grid.cameras, scores, shot.takes)
@@ -37,6 +37,7 @@ def facts_in_memory(checked: Checked, wanted: str) -> ShotFacts:
         len(grid.cameras),
         grid.rejected,
         takes,
+        asdict(grid.advice) if grid.advice else None,
         "memory",
     )
 

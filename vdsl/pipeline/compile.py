@@ -23,6 +23,7 @@ from ..emit.report_json import write_report
 from ..emit.types import CUT, Build, BuiltShot, BuiltTake, RunReport, Stage, Subject, TakeMedia
 from ..emit.video import write_take
 from ..lang import Report, Source, Span
+from ..lang.diagnostics import listing
 from ..lang.ir import Shot, Storyboard, StoryLine
 from ..propose.cameras import Filming, subject_of
 from ..propose.promise import achieved
@@ -86,7 +87,7 @@ def compile_file(
     with staged_build(folder) as staging:
         acts = _stage_all(checked, clock)
         build = _film_all(checked.storyboard, acts, _judge(options, clock), options, staging, clock)
-        _warn_of_empty_shots(build.shots, checked.report)
+        _warn_of_poor_shots(build.shots, checked.report)
         with clock.spent("write", len(build.shots), quiet=True):
             write_build(staging, build)
         report = _report(perf_counter() - started, clock, options, tuple(t.text for t in build.trades))
@@ -207,7 +208,7 @@ def _proposed(acts: list[Act], clock: StageClock) -> Iterator[tuple[Act, Shot, P
     clock.begin("propose", sum(s.proposals for _, s in shots), _UNITS["propose"])
     for act, shot in shots:
         with clock.spent("propose", shot.proposals):
-            grid = propose(act.line, shot, act.state, act.filming)
+            grid = propose(act.line, shot, act.state, act.filming, advised=True)
         yield act, shot, grid
 
 
@@ -291,6 +292,7 @@ def _built(
         camera_proposals=_cameras_each(grid.cameras),
         proposals=len(grid.cameras),
         rejected=grid.rejected,
+        advice=grid.advice,
     )
 
 
@@ -300,16 +302,21 @@ def _cameras_each(cameras: tuple[CameraProposal, ...]) -> int:
     return int(counts.max())
 
 
-def _warn_of_empty_shots(shots: tuple[BuiltShot, ...], report: Report) -> None:
+def _warn_of_poor_shots(shots: tuple[BuiltShot, ...], report: Report) -> None:
     for built in shots:
-        if not built.takes:
-            reasons = ", ".join(f"{n} {why.replace('_', ' ')}" for why, n in built.rejected.items())
-            report.warn(
-                "VDS190",
-                built.shot.span,
-                label=f"no camera could film this: {reasons}",
-                help="leave one of the three words open with *, or try a tighter size",
-            )
+        if built.advice is None and built.takes:
+            continue
+        reasons = ", ".join(f"{n} {why.replace('_', ' ')}" for why, n in built.rejected.items())
+        why = built.advice.why if built.advice else ""
+        instead = built.advice.instead if built.advice else ()
+        report.warn(
+            "VDS192" if built.takes else "VDS190",
+            built.shot.span,
+            label="; ".join(part for part in (why, f"rejected: {reasons}" if reasons else "") if part),
+            help=f"try {listing(f'`{words}`' for words in instead)}"
+            if instead
+            else "no other size, angle or lens helps here: try another place, or another focus",
+        )
 
 
 def _report(seconds: float, clock: StageClock, options: Options, notes: tuple[str, ...]) -> RunReport:

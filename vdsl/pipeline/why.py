@@ -58,6 +58,7 @@ class ShotFacts:
     proposals: int
     rejected: dict[str, int]
     takes: tuple[TakeFacts, ...]
+    advice: dict[str, Any] | None
     origin: str
     stale: bool = False
 
@@ -83,6 +84,7 @@ def facts_of_build(folder: Path, storyboard: Storyboard, shot: str) -> ShotFacts
             int(entry["proposals"]),
             dict(entry["rejected"]),
             tuple(_take_facts(folder, take) for take in entry["takes"]),
+            entry.get("advice"),
             "build",
             document.get("script") != script_digest(storyboard),
         )
@@ -130,6 +132,7 @@ def explanation(facts: ShotFacts) -> dict[str, Any]:
         "judge": facts.judge,
         "proposals": facts.proposals,
         "rejected": dict(sorted(facts.rejected.items(), key=lambda item: (-item[1], item[0]))),
+        "advice": facts.advice,
         "takes": [_told(facts, k) for k in range(len(facts.takes))],
     }
 

@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from runtime.body.skeleton import JOINT
 from runtime.motion.perform import perform
 from runtime.motion.types import (
     ActionClip,
@@ -245,3 +246,32 @@ def test_gaze_rests_on_its_target_from_every_posture() -> None:
         motion = perform({"a": actor}, {"a": Task(look, target=point)}, {}, FPS, 0)
         assert motion.touches["a"].gaze.max() > 0.98
         assert [v for v in sound(motion, "a", 1.7) if "eyes" in v] == [], posture
+
+
+def test_one_leans_over_the_feet_on_the_way_to_the_floor() -> None:
+    down = perform({"a": person()}, {"a": Task(settling("floor"))}, {}, FPS, 0)
+    hips, neck = joint(down, "a", "hips"), joint(down, "a", "neck")
+    middle = int(np.argmin(np.abs(hips[:, 2] - 0.5 * (hips[0, 2] + hips[-1, 2]))))
+    assert neck[middle, 0] - hips[middle, 0] > 0.12
+
+
+def test_a_head_turned_on_a_bowed_trunk_stays_upright() -> None:
+    bowed = clip("action peer { duration 2s; at 50% { body lean 35deg; head turn 65deg }; hold }")
+    motion = perform({"a": person()}, {"a": Task(bowed)}, {}, FPS, 0)
+    head = motion.world_from_joint["a"][-1, JOINT["head"], :3, :3].astype(float)
+    assert abs(np.degrees(np.arctan2(head[1, 0], head[0, 0]))) > 45.0  # it is turned
+    assert abs(np.degrees(np.arcsin(head[2, 1]))) < 12.0  # both eyes as high
+
+
+def test_who_crawls_around_a_bend_keeps_hands_planted() -> None:
+    bend = np.array([[0.0, 0.0], [0.8, 0.0], [1.0, 0.7], [0.6, 1.3], [-0.2, 1.4]])
+    crawl = replace(travelling("crawl"), posture="fours")
+    for height in (1.52, 1.93):
+        motion = perform({"a": person(height)}, {"a": Task(crawl, path=bend)}, {}, FPS, 0)
+        assert [v for v in sound(motion, "a", height) if "hand" in v] == []
+
+
+def test_written_travel_leads_to_the_target() -> None:
+    assert clip("action near { target required place; travel walk; duration 1s }").goes
+    assert not clip("action far { target required place; duration 1s }").goes
+    assert not clip("action here { target required place; travel none; duration 1s }").goes

@@ -58,7 +58,8 @@ def thing(act: Act, motion: SceneMotion, name: str) -> np.ndarray:
 def test_what_came_from_far_is_put_on_the_nearest_table() -> None:
     act, motion = last("anna pick up cup", "anna walk far", "anna put down cup")
     x, y, z = thing(act, motion, "cup")[-1]
-    assert abs(x - 3) < 0.5 and abs(y - 3) < 0.5
+    assert abs(x - 3) < 0.5
+    assert abs(y - 3) < 0.5
     assert z == pytest.approx(0.74, abs=0.02)
 
 
@@ -106,7 +107,8 @@ def test_one_sits_down_at_a_piano_from_its_side() -> None:
     assert not piano.any()
     assert motion.end_actors["anna"].posture == "sitting"
     found = measure(motion, "anna", act.filming.skeletons["anna"], act.filming.fps, act.state.world)
-    assert found.clearance is not None and found.clearance > -0.03
+    assert found.clearance is not None
+    assert found.clearance > -0.03
 
 
 def test_the_head_does_what_the_eyes_cannot() -> None:

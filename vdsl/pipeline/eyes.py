@@ -137,7 +137,8 @@ _SEEN_JOINTS = ("head", "chest", "hips", "hand_l", "hand_r", "shin_l", "shin_r")
 def _facing(trial: Trial, way: StoryProposal, frame: int) -> float:
     people = [way.performances[name] for name in trial.people]
     if len(people) == 1:
-        return float(people[0].heading[-1])
+        turned = np.exp(1j * people[0].heading).mean()  # on the whole, with the way there
+        return float(np.angle(turned))
     a, b = (p.position[frame] for p in people)
     return math.atan2(b[1] - a[1], b[0] - a[0])
 
@@ -147,10 +148,11 @@ def _pose_eye(trial: Trial, way: StoryProposal, frame: int, azimuth: float, cell
     people = [way.performances[name] for name in trial.people]
     points = np.concatenate([p.world_from_joint[frame][:, :3, 3] for p in people])
     low, high = points.min(0), points.max(0)
-    aim = ((low[0] + high[0]) / 2, (low[1] + high[1]) / 2, max((low[2] + high[2]) / 2 + 0.04, 0.78))
+    ground = min(float(p.position[frame, 2]) for p in people)
+    aim = ((low[0] + high[0]) / 2, (low[1] + high[1]) / 2, max((low[2] + high[2]) / 2 + 0.04, ground + 0.78))
     across = np.array([-math.sin(azimuth), math.cos(azimuth)])
     wide = float(np.ptp(points[:, :2] @ across)) + 0.55
-    tall = max(2.0, float(high[2]) + 0.42 - min(float(low[2]), 0.0))
+    tall = max(2.0, float(high[2]) + 0.42 - min(float(low[2]), ground))
     return around(aim, azimuth, math.radians(82), max(tall, wide * cell[1] / cell[0]))
 
 

@@ -22,6 +22,8 @@ from .script import Checked, ScriptError, check_source
 #: Who acts in examples, and who the other person is.
 ACTOR, PARTNER = "anna", "ben"
 CAST = ("woman(top crimson)", "man(top navy)")
+#: What an example writes to have stairs up to a platform there, of that name.
+STAIRS = "stairs"
 #: Far more ways than any action has: every variant is wanted here.
 _EVERY_WAY = 64
 #: Where big things stand on the trial floor, with a table in its middle and without.
@@ -86,6 +88,8 @@ def action_script(definition: ActionDef, catalog: Catalog, cast: tuple[str, str]
     big: list[str] = []
     kicked = any(move.kind == "send" for move in definition.variants[0].part.moves)
     for name in definition.props:
+        if name == STAIRS:
+            continue
         prop = catalog.get("prop", name)
         if not isinstance(prop, PropDef):
             raise NoTrialError(f"the action `{definition.name}` is tried with `{name}`, which is no prop")
@@ -105,6 +109,8 @@ def action_script(definition: ActionDef, catalog: Catalog, cast: tuple[str, str]
     places = _BESIDE_TABLE if table else (_BETWEEN, *_AROUND) if kicked else _AROUND
     for name, (x, y) in zip(big, places, strict=False):
         lines.append(f"        place {name} = {name}, at ({x}, {y})m")
+    if STAIRS in definition.props:
+        lines.append(f"        platform {STAIRS}, at (6.6, 4.6)m, size (3, 3.4, 1.02)m, steps west")
     start = "(6, 6)m, facing 90deg" if table else "(6.2, 5.6)m, facing -40deg"
     posture = " lying" if definition.sit == "up" else ""  # there has to be something to get up from
     if both:

@@ -22,7 +22,7 @@ from .skeleton import PALETTE, Skeleton
 from .spec import BodySpec
 
 #: Raised with every change of shape, so that old cache files are not read.
-VERSION = 22
+VERSION = 23
 
 
 @dataclass(frozen=True, eq=False)

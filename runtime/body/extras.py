@@ -289,7 +289,9 @@ def _backpack(f: Figure, solid: Field) -> list[Piece]:
     crest = cast(
         solid, np.array([[f.joint("upperarm_l")[0], y[1], f.level(1.0) + 0.12 * h]]), (0, 0, -1.0), 0.25 * h
     )
-    strap = strand(np.concatenate([behind, crest, ahead]), 0.011 * h, 5)
+    way = _halved(np.concatenate([behind, crest, ahead])[:, None], 6)
+    way = _kept_off(solid, way, np.full(way.shape[:2], 0.003 * h))[:, 0]
+    strap = strand(way, 0.011 * h, 5)
     return [
         Piece(pack, colour, "pack", None, rule="chest", material="plain" if space else "cloth"),
         Piece(flap, shade(colour, 0.82), "trim", None, rule="chest"),

@@ -51,7 +51,7 @@ def limb_pieces(f: Figure) -> list[Piece]:
     long_sleeves = f.spec.top not in ("tshirt", "tank", "scrubs", "dress", "gown")
     start = (f.p.upper_arm + f.p.forearm) * 0.90 if long_sleeves else 0.22 * f.p.upper_arm
     local: Field = lambda q: solid(q @ ARM_FRAME + origin)  # noqa: E731
-    patch = polygonise(local, (start, -0.065 * h, -0.06 * h), (reach, 0.065 * h, 0.06 * h), 0.0038 * h / 1.7)
+    patch = polygonise(local, (start, -0.065 * h, -0.06 * h), (reach, 0.065 * h, 0.06 * h), 0.0045 * h / 1.7)
     wrist = f.p.upper_arm + f.p.forearm
     focus = Focus((wrist + 0.55 * f.p.hand, 0.0, 0.0), 0.6 * f.p.hand, 2.2)
     patch = simplify(patch, round((500 if long_sleeves else 760) * f.detail), local, focus)

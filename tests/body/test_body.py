@@ -9,11 +9,14 @@ import pytest
 from numpy.typing import NDArray
 
 from runtime.body import build
+from runtime.body.anatomy import Figure
 from runtime.body.build import Body, build_body, make_body
+from runtime.body.field import monotone
 from runtime.body.pieces import PARTS
 from runtime.body.proportions import make_skeleton, proportions
 from runtime.body.skeleton import JOINT, JOINTS, PALETTE, forward_kinematics, skinning_matrices
 from runtime.body.spec import BodySpec
+from runtime.body.weights import body_weights, cape_weights
 
 from .poses import elbow, posed, turn
 
@@ -211,6 +214,36 @@ def test_layers_hang_alike(man: Body) -> None:
         d = np.linalg.norm(man.mesh.vertices[bottom_v] - man.mesh.vertices[v], axis=1)
         nearest = bottom_v[np.argmin(d)]
         assert abs(moved[v] - moved[nearest]) < 0.012 + 0.9 * d.min()
+
+
+def test_skirts_share_both_legs_and_capes_go_with_them() -> None:
+    """The middle of a skirt goes with both legs alike, and a cape over it lies as the skirt does."""
+    figure = Figure(BodySpec(top="gown", back="cape"))
+    low = np.array([[x, 0.0, figure.p.knee] for x in (0.2, -0.2)])
+    w = body_weights(figure, low, side_blend=0.042)
+    left, right = (w[:, [PALETTE.index(f"{n}_{s}") for n in ("thigh", "half-knee", "shin")]] for s in "lr")
+    assert np.allclose(left, right)
+    assert left.sum() > 0.9
+    assert np.allclose(cape_weights(figure, low), w)
+
+
+def test_plates_of_the_thigh_are_whole() -> None:
+    """Steel reaches around the thigh although some of its triangles are longer than it."""
+    body = make_body(BodySpec(top="armour"))
+    plates = body.mesh.vertices[body.mesh.faces[part(body, "plate")]]
+    p = proportions(body.spec)
+    middle = plates[(plates[..., 2].min(1) < p.knee + 0.2) & (plates[..., 2].max(1) > p.knee + 0.14)]
+    turns = np.arctan2(middle[..., 1].ravel() - p.hip[0], middle[..., 0].ravel())
+    assert np.histogram(turns, bins=8, range=(-np.pi, np.pi))[0].min() > 0
+
+
+def test_curves_go_through_their_points_and_no_further() -> None:
+    x, y = np.array([0.0, 1.0, 1.5, 4.0]), np.array([0.0, 2.0, 2.0, -1.0])
+    curve = monotone(x, y)
+    assert np.allclose(curve(x), y)
+    between = curve(np.linspace(-1.0, 5.0, 200))
+    assert between.min() >= -1.0
+    assert between.max() <= 2.0
 
 
 # --- faces ----------------------------------------------------------------------------

@@ -89,6 +89,18 @@ def test_sheet_shows_the_keyframes(tmp_path: Path) -> None:
     assert (picture[:, : sheet.TEXT] < 80).any()  # there is ink in the text column
 
 
+def test_sheet_says_what_a_cut_breaks_below_the_pictures(tmp_path: Path) -> None:
+    shots = [f.built(tmp_path, "s1", takes=1), f.built(tmp_path, "s2", takes=1)]
+    plain, told = f.film(shots), f.film(shots, continuity=(f.crossing("s1", "s2"),))
+    before, after = (np.asarray(sheet.draw_sheet(b, b.shots, 0, (1, 1))).astype(int) for b in (plain, told))
+    assert after.shape[0] > before.shape[0]
+    row = (after.shape[0] - sheet.HEAD - sheet.MARGIN // 2) // 2
+    ends = [sheet.HEAD + (k + 1) * row for k in (0, 1)]
+    strips = [after[end - 34 : end - 4, sheet.MARGIN + sheet.TEXT :] for end in ends]
+    ink = [(strip[..., 0] - strip[..., 1] > 80).sum() for strip in strips]
+    assert ink[0] == 0 < ink[1], "only the shot that is cut to carries the words"
+
+
 def test_a_long_film_goes_on_over_sheets(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(sheet, "SHOTS_PER_SHEET", 2)
     shot = f.built(tmp_path, "s1", takes=1)

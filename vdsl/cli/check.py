@@ -66,14 +66,41 @@ def stop(message: str, code: int) -> NoReturn:
 def check(
     file: Annotated[Path, typer.Argument(help="The storyboard, a .vds file.", show_default=False)],
     format: Annotated[Format, typer.Option(help="How to print what is found.")] = Format.text,
+    continuity: Annotated[
+        bool, typer.Option("--continuity", help="Say as well which cuts break the rules of cutting.")
+    ] = False,
 ) -> None:
     """Check a storyboard and print every mistake, without making anything.
 
+    With --continuity the cuts of its last build, build/NAME, are told; where there is none of the script as
+    it is, a few proposals of every shot are put in order by their geometry and the best ones looked at.
     Exit code 0 if all is well, 1 if the storyboard has errors.
     """
-    checked = check_or_exit(file, format.value)
+    checked = check_or_exit(file, format.value, quiet_warnings=continuity)
+    if continuity:
+        told = _check_cuts(file, checked, format.value)
+        print_report(checked.report, format.value, str(file))
+        if format is Format.text:
+            write_line(printable(told), sys.stdout)
     if format is Format.text:
         write_line(f"{printable(str(file))}: {summary(checked.storyboard)}", sys.stdout)
+
+
+def _check_cuts(file: Path, checked: Checked, format: str) -> str:
+    """Add what cuts break to the findings; returns what was looked at."""
+    # Only now: a plain check must not wait for numpy.
+    from ..pipeline.rehearsal import PROPOSALS, continuity_in_memory, continuity_of_build, report_cuts
+    from .failures import failures_told
+
+    folder = Path("build") / file.stem
+    looked = f"continuity: the takes in {folder}"
+    with failures_told(file, format):
+        found = continuity_of_build(folder, checked.storyboard)
+        if found is None:
+            looked = f"continuity: the best of up to {PROPOSALS} proposals a shot, by their geometry"
+            found = continuity_in_memory(checked)
+        report_cuts(found, checked.storyboard, checked.report)
+    return f"{looked}; {len(found)} found"
 
 
 def summary(storyboard: Storyboard) -> str:

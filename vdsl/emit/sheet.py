@@ -94,6 +94,7 @@ def _draw_words(draw: ImageDraw.ImageDraw, build: Build, built: BuiltShot, numbe
 def _draw_cuts(draw: ImageDraw.ImageDraw, build: Build, built: BuiltShot, top: float) -> None:
     """What the cut into the shot breaks, below its pictures."""
     words = "   ·   ".join(c.text for c in build.into(built.shot.id))
+    words = words.replace("→", " to ").replace("–", " and ")  # the sheet's letters have neither
     room = WIDTH - 2 * MARGIN - TEXT
     lettering.write(draw, (MARGIN + TEXT, top), lettering.shortened(words, 16, room), 16, ACCENT)
 

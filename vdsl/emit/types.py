@@ -130,7 +130,8 @@ class Trade:
     def text(self) -> str:
         """``shot 4: take 3 instead of 1 (score 0.81 instead of 0.86) keeps the line``."""
         why = " and ".join(_KEEPS[rule] for rule in self.keeps)
-        scores = f"score {self.score:.2f} instead of {self.best:.2f}"
+        digits = 2 if f"{self.score:.2f}" != f"{self.best:.2f}" else 4
+        scores = f"score {self.score:.{digits}f} instead of {self.best:.{digits}f}"
         return f"shot {self.number}: take {self.take} instead of 1 ({scores}) {why}"
 
 

@@ -180,7 +180,9 @@ def prepare(scene: RenderScene, style: Style) -> Prepared:
     order, clusters = _clusters(scene.static, scene.static_object, static_wall, static_cull)
     static = _ordered(scene.static, order)
     fitting = np.full(len(scene.skinned.faces), LOOSE, np.int32) if scene.fitting is None else scene.fitting
-    own_wall = np.maximum(fitting, -1).astype(np.int32)
+    people = np.where(fitting < LOOSE, scene.wall_count + LOOSE - 1 - fitting, -1)
+    own_wall = np.maximum(fitting, people).astype(np.int32)
+    own_wall = np.maximum(own_wall, -1)
     moving_order, moving_clusters = _clusters(scene.skinned, scene.skinned_object, own_wall, moving_cull)
     fitting, own_wall = fitting[moving_order], own_wall[moving_order]
     skinned = _ordered(scene.skinned, moving_order)
@@ -193,7 +195,7 @@ def prepare(scene: RenderScene, style: Style) -> Prepared:
     clear = np.isin(static.materials, panes)
     clear_part = np.isin(skinned.materials, panes) & (fitting > LOOSE)
     parts = np.concatenate([np.where(clear, -1, static.parts), np.where(clear_part, -1, skinned.parts)])
-    moves = np.concatenate([np.zeros(len(order), int), (fitting == LOOSE).astype(int)])
+    moves = np.concatenate([np.zeros(len(order), int), (fitting <= LOOSE).astype(int)])
     surfaces, surface = np.unique(np.stack([moves, object_ids, parts], axis=1), axis=0, return_inverse=True)
     if len(surfaces) >= 0xFFFF:
         raise ValueError(f"RenderScene: {len(surfaces)} parts of objects; 65534 is the most")
@@ -222,7 +224,7 @@ def prepare(scene: RenderScene, style: Style) -> Prepared:
         moving_surface=int((surfaces[:, 0] == 0).sum()),
         static_faces=len(order),
         set_casters=set_casters,
-        casters=(_casters(skinned, own_wall) + len(order)).astype(np.int32),
+        casters=(_casters(skinned, fitting) + len(order)).astype(np.int32),
         area=_touching_area(skinned, fitting),
         volume=occlusion_volume(static, set_casters),
         stage=stage_bounds(static, set_casters),
@@ -230,11 +232,11 @@ def prepare(scene: RenderScene, style: Style) -> Prepared:
     )
 
 
-def _casters(skinned: Mesh, wall: NDArray[np.int32]) -> NDArray[np.int32]:
+def _casters(skinned: Mesh, fitting: NDArray[np.int32]) -> NDArray[np.int32]:
     """Skinned faces that throw shadows: all but those of doors and windows, whose walls throw none."""
     nobody = np.full(len(skinned.faces), -1, np.int32)
     found = key_casters(skinned, nobody, nobody)
-    return found[wall[found] < 0]
+    return found[fitting[found] < 0]
 
 
 def _touching_area(skinned: Mesh, fitting: NDArray[np.int32]) -> NDArray[np.float32]:

@@ -15,7 +15,7 @@ from .bake import light_basis
 from .device import Backend, start
 from .film import film_table, to_encoded, to_linear, unexposed
 from .prepare import Prepared, prepare
-from .types import Camera, Frames, RenderScene, Style, Views
+from .types import LOOSE, Camera, Frames, RenderScene, Style, Views
 
 CHUNK_PIXELS = 8_000_000  # pixels in flight; about 30 bytes each
 CHUNK_VERTICES = 2_000_000  # skinned vertices in flight; about 50 bytes each
@@ -97,6 +97,8 @@ class Renderer:
         self._load_floor(prepared)
         self._load_shadow(prepared)
         self._walls = scene.wall_count
+        fitting = scene.fitting if scene.fitting is not None else np.zeros(0, np.int32)
+        self._people = max(LOOSE - int(fitting.min(initial=LOOSE)), 0)
         self._palette_size = int(scene.joints.max()) + 1 if len(scene.joints) else 0
         self._scene = prepared
 
@@ -180,9 +182,11 @@ class Renderer:
         if count and not (moment.min() >= 0 and moment.max() < max(len(palettes), 1)):
             raise ValueError("Views.moment: an index is outside the palettes")
         hidden = np.asarray(views.hidden)
-        if hidden.shape != (count, self._walls):
+        most = self._walls + self._people
+        if hidden.shape not in ((count, self._walls), (count, most)):
             raise ValueError(f"Views.hidden: expected {(count, self._walls)}, got {hidden.shape}")
-        hidden = np.concatenate([hidden, np.zeros((count, 1), hidden.dtype)], axis=1)
+        shown = np.zeros((count, most + 1 - hidden.shape[1]), hidden.dtype)  # never without a column
+        hidden = np.concatenate([hidden, shown], axis=1)
         return pack_views(views.camera, count, width, height), moment, hidden.astype(np.int32)
 
     def _buffer(self, name: str, shape: tuple[int, ...], dtype: type) -> Any:

@@ -54,7 +54,8 @@ class RenderScene:
     skinned: bind-pose mesh of everything that moves; skinned_object: int32 [F], object ids that
         continue after the static ones; joints: int32 [V, 4] palette indices; weights: float32 [V, 4]
     wall_count: number of wild walls
-    fitting: int32 [F] of skinned faces: :data:`LOOSE` for people and things; what moves in the set itself
+    fitting: int32 [F] of skinned faces: :data:`LOOSE` for things, ``LOOSE − 1 − k`` for the k-th person, who
+        may be left out of a view;  what moves in the set itself
         (a door's leaf) is drawn like the set: the wild wall it is in, or -1. None: all are loose
     levels: heights of its floors, rising; on them people leave contact shadows
     """
@@ -90,7 +91,8 @@ class Camera:
 
 @dataclass(frozen=True, eq=False)
 class Views:
-    """N views: moment int32 [N] indexes the palettes; hidden bool [N, W], walls not drawn in the view."""
+    """N views: moment int32 [N] indexes the palettes; hidden bool [N, W] or [N, W + people], what
+    is not drawn in the view: walls, then people."""
 
     camera: Camera
     moment: NDArray[np.int32]

@@ -10,12 +10,12 @@ from vdsl.cinema.telling import NOTES, advantages, compared, faults, is_good, nu
 
 BEST = dict.fromkeys(MEASURES, 0.0) | {
     "visibility": 1.0, "head_visible": 1.0, "in_frame": 1.0, "headroom": 0.1, "lead_room": 0.2,
-    "interest": 1.0, "face": 0.9, "clearance": 1.0,
+    "interest": 1.0, "view": 1.0, "face": 0.9, "clearance": 1.0,
 }  # fmt: skip
 
 
 def test_every_measure_has_a_note_and_no_other() -> None:
-    assert set(NOTES) == set(MEASURES)
+    assert set(NOTES) == {*MEASURES, "picture_visibility"}
     assert all(is_good(name, value) for name, value in BEST.items())
 
 

@@ -38,6 +38,7 @@ MEASURES = (
     "headroom_error",  # the same, off the size's own headroom
     "head_cut",  # how far what the size puts at the top is above the frame, share of its height, the greatest
     "feet_cut",  # the same below the frame, for sizes that are to show the whole; 0 for the others
+    "view",  # share of the window in which everybody a two-shot is of, or the shoulder it is over, is seen so
     "lead_room",  # more room ahead of the face than behind: −1..1, 0 where it looks at the camera
     "thirds_error",  # distance of the eyes from the upper third, share of the frame's height
     "interest",  # share of the other points that matter (thing in hand, partner) in the frame and not hidden
@@ -64,6 +65,7 @@ class Takes:
     others: pillars (foot [T, 3], crown [T, 3], radius) of everybody else
     ignore: object id whose boxes hide nothing (the thing filmed)
     interest: [T, 3] each, other points one would like to see
+    view: one of :data:`vdsl.lang.ir.VIEWS`, or ""
     near: the boxes near the cameras at the sampled frames, where somebody has looked already
     """
 
@@ -77,6 +79,7 @@ class Takes:
     ignore: int | None = None
     interest: tuple[Array, ...] = ()
     near: space.Nearby | None = None
+    view: str = ""
 
 
 @dataclass(frozen=True, eq=False)
@@ -114,6 +117,7 @@ def measure(takes: Takes, subject: Subject, world: World, fps: float) -> Measure
     others = [(foot[at], crown[at], radius) for foot, crown, radius in takes.others]
     seen = clear_lines(world.solids, camera, sight, hidden, takes.ignore)
     seen &= clear_of_people(camera, sight, others)
+    values["view"] = _view(takes, subject, at, camera, axes)
     values |= _visibility(takes, inside[:, :, sight_index], seen)
     shown = _shown(takes, world, at, camera, axes, hidden, others)
     values["interest"] = _interest(takes, shown)
@@ -217,6 +221,22 @@ def _size_error(
 def _beyond(over: Array, window: Bools) -> Array:
     """The most by which something is over a border of the frame while the window is open: [P, F] -> [P]."""
     return np.clip(np.where(window, over, 0.0).max(axis=1), 0.0, 2.0)
+
+
+def _view(takes: Takes, subject: Subject, at: NDArray[np.int64], camera: Array, axes: Array) -> Array:
+    """Whether all heads are in the frame, or the near head at its side: a share of the window, [P]."""
+    shoulder = takes.view == "ots" and subject.via is not None
+    heads = [subject.via] if shoulder and subject.via is not None else list(subject.heads.values())
+    if not heads:
+        return np.ones(len(camera))
+    points = np.stack([head[at] for head in heads], axis=1)
+    xy, depth = project(points[None], camera, axes, takes.track.focal[:, at], takes.track.sensor)
+    if not shoulder:
+        return _mean(np.asarray(_within(xy, depth, 0.03).all(axis=-1)), takes.window)
+    aside, high = np.abs(xy[..., 0, 0] - 0.5), xy[..., 0, 1]
+    nearer = (depth[..., 0] > 0.2) & (depth[..., 0] < 0.75 * length(camera - subject.landmarks["eyes"][at]))
+    there = nearer & (aside > 0.16) & (aside < 0.62) & (high > -0.6) & (high < 0.75)
+    return _mean(np.asarray(there), takes.window)
 
 
 def _within(xy: Array, depth: Array, margin: float) -> Bools:

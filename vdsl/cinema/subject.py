@@ -6,7 +6,8 @@ subject, so that framing and measuring need not ask which it is.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,6 +28,8 @@ class Subject:
     landmarks: by name, float64 [T, 3]: crown, hairline, brow, eyes, nose, chin, collar, pocket, waist,
         thigh, knees, feet, hand_l, hand_r
     face: float64 [T, 3], unit direction the face points; zero for what has none
+    heads: float64 [T, 3] each, eyes of everybody a shot of several has to show, by name; {} for a single one
+    via: float64 [T, 3], the head over whose shoulder the camera looks, or the eyes it looks through
     """
 
     name: str
@@ -36,6 +39,8 @@ class Subject:
     heading: NDArray[np.float64]
     landmarks: dict[str, NDArray[np.float64]]
     face: NDArray[np.float64]
+    heads: dict[str, NDArray[np.float64]] = field(default_factory=dict)
+    via: NDArray[np.float64] | None = None
 
     @property
     def frames(self) -> int:
@@ -50,7 +55,9 @@ class Subject:
         """The same so many metres higher."""
         shift = np.array((0.0, 0.0, up))
         moved = {name: path + shift for name, path in self.landmarks.items()}
-        return replace(self, position=self.position + shift, landmarks=moved)
+        heads = {name: head + shift for name, head in self.heads.items()}
+        via = None if self.via is None else self.via + shift
+        return replace(self, position=self.position + shift, landmarks=moved, heads=heads, via=via)
 
     def travel(self) -> float:
         """Metres from where it starts to the farthest it gets from there on the floor."""
@@ -103,6 +110,28 @@ def person(
     face = world[:, JOINT["head"], :3, 0]
     return Subject(
         name, "person", h, np.asarray(position, float), np.asarray(heading, float), landmarks, face.copy()
+    )
+
+
+def group(people: Sequence[Subject]) -> Subject:
+    """Several people as one subject: halfway between them, from the highest crown to the lowest feet."""
+    first = people[0]
+    landmarks = {}
+    for name in first.landmarks:
+        points = np.stack([one.landmarks[name] for one in people])
+        landmarks[name] = points.mean(axis=0)
+        if name in ("crown", "feet"):
+            end = np.max if name == "crown" else np.min
+            landmarks[name][:, 2] = end(points[..., 2], axis=0)
+    face = np.mean([one.face for one in people], axis=0)
+    face = face / np.maximum(np.linalg.norm(face, axis=1, keepdims=True), 0.5)
+    return replace(
+        first,
+        height=max(one.height for one in people),
+        position=np.mean([one.position for one in people], axis=0),
+        landmarks=landmarks,
+        face=face,
+        heads={one.name: one.landmarks["eyes"] for one in people},
     )
 
 

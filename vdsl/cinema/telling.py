@@ -28,6 +28,7 @@ _ANY = float("inf")
 #: Of every measure; shares are of one, 1 is all.
 NOTES = {
     "visibility": Note("share", "nothing hides the subject", 0.9, 1.0),
+    "picture_visibility": Note("share", "nothing hides the subject in the picture", 0.85, 1.0),
     "head_visible": Note("share", "the head is seen all the time", 0.9, 1.0),
     "in_frame": Note("share", "head and middle stay in the frame", 0.9, 1.0),
     "size_error": Note("log", "the size is the one asked for", 0.0, 0.1),
@@ -36,6 +37,7 @@ NOTES = {
     "headroom_error": Note("frame height", "as much air as the size wants", 0.0, 0.06),
     "head_cut": Note("frame height", "the head is not cut", 0.0, 0.02),
     "feet_cut": Note("frame height", "the feet are not cut", 0.0, 0.02),
+    "view": Note("share", "everybody the view is of is seen", 0.9, 1.0),
     "lead_room": Note("−1..1", "more room ahead of the face than behind", -0.02, 1.0),
     "thirds_error": Note("frame height", "the eyes are on the upper third", 0.0, 0.12),
     "interest": Note("share", "what is acted on, or with whom, is seen too", 0.6, 1.0),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import TypeAlias
 
@@ -15,12 +16,19 @@ _MOST_WORDS = 4  # extreme close up shot
 
 @dataclass(frozen=True)
 class CameraWords:
-    """What a camera line says; canonical words. ``said``: slots that were named, not left free."""
+    """What a camera line says; canonical words. ``said``: slots that were named, not left free.
+
+    view: one of :data:`vdsl.lang.ir.VIEWS` or ""; whose: shoulder or eyes, where somebody was named
+    lean: radians of a ``dutch`` picture
+    """
 
     movements: tuple[str, ...]
     scales: tuple[str, ...]
     angles: tuple[str, ...]
     said: frozenset[str]
+    view: str = ""
+    whose: ast.Name | None = None
+    lean: float | None = None
 
 
 FREE = CameraWords(words.ANY["movement"], words.ANY["scale"], words.ANY["angle"], frozenset())
@@ -35,11 +43,16 @@ def read_camera(node: ast.CameraNode | None, rig: str, report: Report) -> Camera
         return FREE
     found: dict[str, tuple[str, ...]] = {}
     stars: list[ast.Star] = []
-    for term in _terms(node.words):
+    whose: ast.Name | None = None
+    terms = _terms(node.words)
+    while terms:
+        term = terms.pop(0)
         if isinstance(term, ast.Star):
             stars.append(term)
             continue
         _take(term, found, rig, report)
+        if found.get("view", ("",))[0] in ("ots", "pov") and whose is None and _is_view(term):
+            whose = _owner(terms)
     free = [slot for slot in SLOTS if slot not in found]
     if len(stars) > len(free):
         report.error(
@@ -53,7 +66,33 @@ def read_camera(node: ast.CameraNode | None, rig: str, report: Report) -> Camera
         found.get("scale") or words.ANY["scale"],
         found.get("angle") or words.ANY["angle"],
         frozenset(slot for slot, value in found.items() if value),
+        found.get("view", ("",))[0],
+        whose,
+        math.radians(words.DUTCH) if "lean" in found else None,
     )
+
+
+def _is_view(term: _Term) -> bool:
+    meaning = None if isinstance(term, ast.Star) else words.CAMERA_WORDS.get(term[0][0])
+    return meaning is not None and meaning.slot == "view"
+
+
+def _owner(terms: list[_Term]) -> ast.Name | None:
+    """Takes the name that stands after ``ots`` or ``pov`` out of the terms; None where a camera word does."""
+    for skipped in (0, 1):  # ots of ben
+        if len(terms) <= skipped:
+            return None
+        term = terms[skipped]
+        if isinstance(term, ast.Star) or len(term) > 1:
+            return None
+        word, span = term[0]
+        if skipped == 0 and word in ("of", "from", "at"):
+            continue
+        if word in words.CAMERA_WORDS or word in words.NOT_YET:
+            return None
+        del terms[: skipped + 1]
+        return ast.Name(tuple(span.text.split(".")), span)
+    return None
 
 
 def _terms(items: tuple[ast.Name | ast.Star | ast.Choice, ...]) -> list[_Term]:
@@ -125,7 +164,7 @@ def _take(
             )
             continue
         if rig == "paper":
-            _on_paper(meaning.words, span, report)
+            _on_paper(meaning, span, report)
         slot = meaning.slot
         meant.extend(w for w in meaning.words if w not in meant)
     if slot is None:
@@ -185,18 +224,19 @@ def _unknown(word: str, span: Span, found: dict[str, tuple[str, ...]], report: R
     return None
 
 
-def _on_paper(meant: tuple[str, ...], span: Span, report: Report) -> None:
+def _on_paper(meaning: words.Meaning, span: Span, report: Report) -> None:
     """Report a word for which the paper gives no numbers."""
-    near = next((words.NEAREST[word] for word in meant if word in words.NEAREST), None)
-    if near is not None:
-        report.error(
-            "VDS046",
-            span,
-            label="the paper has no numbers for this",
-            suggestion=near,
-            fix=near,
-            help=f"say {near}, or frame with `rig cinema`",
-        )
+    if meaning.slot == "lean" or not set(meaning.words) & (words.NEAREST.keys() | set(ir.VIEWS)):
+        return
+    near = next((words.NEAREST[word] for word in meaning.words if word in words.NEAREST), None)
+    report.error(
+        "VDS046",
+        span,
+        label="the paper has no numbers for this",
+        suggestion=near,
+        fix=near,
+        help=f"say {near}, or frame with `rig cinema`" if near else "frame with `rig cinema`",
+    )
 
 
 def _slot_help(slot: str) -> str:

@@ -34,6 +34,8 @@ ANGLES = ("eye-level", "high-angle", "low-angle")
 #: All sizes, from the closest; :data:`SCALES` are those that ``rig paper`` has, and so for the others.
 SIZES = ("extreme-close-up", "big-close-up", "close-up", "medium-close-up", "medium", "cowboy", "medium-long",
          "full", "wide", "extreme-wide")  # fmt: skip
+#: What a camera may be besides: over somebody's shoulder, through somebody's eyes, or of two and of all.
+VIEWS = ("ots", "pov", "two-shot", "group")
 ALL_ANGLES = (*ANGLES, "overhead", "worms-eye", "shoulder-level", "hip-level", "knee-level", "ground-level")
 
 
@@ -113,6 +115,8 @@ class Shot:
     focus: the character or object the camera is about; None only where nobody is in the scene
     speed: action speed factor (1 as recorded)
     feelings: what shows on faces, as (character, word of :data:`runtime.motion.feelings.FEELINGS`)
+    view: one of :data:`VIEWS`, or ""; whose: over whose shoulder (``ots``) or through whose eyes (``pov``),
+        or who is to be in the picture first (``two-shot``, ``group``)
     """
 
     id: str
@@ -133,6 +137,8 @@ class Shot:
     style: str
     span: Span = field(compare=False, repr=False)
     feelings: tuple[tuple[str, str], ...] = ()
+    view: str = ""
+    whose: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)

@@ -89,7 +89,7 @@ def _fitting(
                 label="nobody acts on this line, so there is no one to follow",
                 help="put it below a story line, or take another movement",
             )
-    return CameraWords(movements, scales, said.angles, said.said)
+    return replace(said, movements=movements, scales=scales)
 
 
 def _shot(

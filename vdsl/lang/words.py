@@ -68,6 +68,15 @@ _ANGLES: dict[str, str] = {
     "knee-level": "knee-level knee knee-height",
     "ground-level": "ground-level ground ground-height floor-level",
 }
+_VIEWS: dict[str, str] = {
+    "ots": "ots over-the-shoulder over-shoulder over-the-shoulder-of over-shoulder-of over",
+    "pov": "pov point-of-view pov-of point-of-view-of through-the-eyes-of subjective",
+    "two-shot": "two-shot twoshot 2-shot two",
+    "group": "group group-shot everybody three-shot",
+}
+_LEANS = "dutch dutch-angle dutch-tilt canted canted-angle oblique"
+#: Words that lean the picture, and by how many degrees.
+DUTCH = 12.0
 #: The nearest word of the paper to each that the paper has not: what ``rig paper`` suggests, and what the
 #: discriminator, which knows the paper's words, is told.
 NEAREST: dict[str, str] = {
@@ -86,13 +95,10 @@ NEAREST: dict[str, str] = {
 }
 #: Words of film grammar that are not built yet, and the nearest that is.
 NOT_YET: dict[str, tuple[str, str]] = {
-    "dutch": ("angle", "eye-level"), "ots": ("angle", "eye-level"), "pov": ("angle", "eye-level"),
-    "two-shot": ("scale", "medium"),
     "crane": ("movement", "pedestal"), "roll": ("movement", "static"), "dolly-zoom": ("movement", "push"),
     "handheld": ("movement", "follow"), "whip-pan": ("movement", "pan"), "rack-focus": ("movement", "static"),
 }  # fmt: skip
 _HINTS = {
-    "dutch": "tilt the picture with the option `roll 12deg`",
     "roll": "tilt the picture with the option `roll 12deg`",
 }
 
@@ -102,7 +108,13 @@ MEDIUM_CLOSE_SHOT = ("mcs", "medium-close-up")
 
 def _table() -> dict[str, Meaning]:
     found: dict[str, Meaning] = {}
-    for slot, words in (("movement", _MOVEMENTS), ("scale", _SCALES), ("angle", _ANGLES)):
+    for slot, words in (
+        ("movement", _MOVEMENTS),
+        ("scale", _SCALES),
+        ("angle", _ANGLES),
+        ("view", _VIEWS),
+        ("lean", {"dutch": _LEANS}),
+    ):
         for canonical, aliases in words.items():
             for alias in aliases.split():
                 found[alias] = Meaning(slot, tuple(canonical.split("|")))

@@ -27,6 +27,12 @@ def segment_frames(frames: int, segments: int = SEGMENTS) -> NDArray[np.int64]:
     return ((np.arange(segments) + 0.5) * frames / segments).astype(np.int64)
 
 
+def not_drawn(staged: StagedScene, camera: CameraProposal) -> NDArray[np.bool_]:
+    """What a take leaves out, bool [W + people]: walls, then whoever it looks through the eyes of."""
+    people = np.array([name == camera.unseen for name in staged.bodies], bool)
+    return np.concatenate([camera.hidden_walls, people])
+
+
 class Camerawork:
     """Draws any proposal of the scene it was last shown. One renderer for each style that is asked for."""
 
@@ -44,16 +50,41 @@ class Camerawork:
         size: tuple[int, int] = JUDGE_SIZE,
     ) -> NDArray[np.uint8]:
         """Frames for ranking: uint8 [P, 8, H, W, 3] of P proposals; shared moments are skinned once."""
+        color = self._segments(staged, style, stories, cameras, size).color
+        return color.reshape(len(cameras), SEGMENTS, *color.shape[1:])
+
+    def judge_ids(
+        self,
+        staged: StagedScene,
+        style: str,
+        stories: tuple[StoryProposal, ...],
+        cameras: tuple[CameraProposal, ...],
+        size: tuple[int, int],
+    ) -> NDArray[np.int32]:
+        """Object ids in the same frames: int32 [P, 8, H, W]."""
+        ids = self._segments(staged, style, stories, cameras, size, ids=True).ids
+        assert ids is not None
+        return ids.reshape(len(cameras), SEGMENTS, *ids.shape[1:])
+
+    def _segments(
+        self,
+        staged: StagedScene,
+        style: str,
+        stories: tuple[StoryProposal, ...],
+        cameras: tuple[CameraProposal, ...],
+        size: tuple[int, int],
+        ids: bool = False,
+    ) -> Frames:
+        """The middle frames of the segments of P proposals, one after the other."""
         at = {s.index: segment_frames(s.frames) for s in stories if any(c.story == s.index for c in cameras)}
         first = {story: k * SEGMENTS for k, story in enumerate(at)}
         by_index = {s.index: s for s in stories}
-        moments = np.concatenate([_palettes(staged, by_index[i], frames) for i, frames in at.items()])
+        moments = np.concatenate([story_palettes(staged, by_index[i], frames) for i, frames in at.items()])
         moment = np.concatenate([first[c.story] + np.arange(SEGMENTS) for c in cameras])
         tracks = [(c.track, at[c.story]) for c in cameras]
-        hidden = np.repeat(np.stack([c.hidden_walls for c in cameras]), SEGMENTS, axis=0)
+        hidden = np.repeat(np.stack([not_drawn(staged, c) for c in cameras]), SEGMENTS, axis=0)
         views = Views(_camera(tracks), moment.astype(np.int32), hidden)
-        color = self._renderer(staged, style).render(moments, views, size).color
-        return color.reshape(len(cameras), SEGMENTS, *color.shape[1:])
+        return self._renderer(staged, style).render(moments, views, size, ids=ids)
 
     def take_frames(
         self,
@@ -68,9 +99,9 @@ class Camerawork:
 
         def draw(begin: int) -> NDArray[np.uint8]:
             frames = np.arange(begin, min(begin + _FRAMES_A_LAUNCH, story.frames))
-            hidden = np.repeat(camera.hidden_walls[None], len(frames), axis=0)
+            hidden = np.repeat(not_drawn(staged, camera)[None], len(frames), axis=0)
             views = Views(_camera([(camera.track, frames)]), np.arange(len(frames), dtype=np.int32), hidden)
-            return renderer.render(_palettes(staged, story, frames), views, size).color
+            return renderer.render(story_palettes(staged, story, frames), views, size).color
 
         with ThreadPoolExecutor(max_workers=1) as ahead:
             upcoming = ahead.submit(draw, 0)
@@ -106,7 +137,10 @@ def first_frame(track: CameraTrack) -> Camera:
     return _camera([(track, np.array([0]))])
 
 
-def _palettes(staged: StagedScene, story: StoryProposal, frames: NDArray[np.integer]) -> NDArray[np.float32]:
+def story_palettes(
+    staged: StagedScene, story: StoryProposal, frames: NDArray[np.integer]
+) -> NDArray[np.float32]:
+    """Palettes float32 [F, P, 3, 4] of some frames of a performance."""
     joints = {name: p.world_from_joint for name, p in story.performances.items()}
     return palettes(staged, joints, story.props, frames)
 

@@ -23,7 +23,7 @@ from ..cinema.measures import Measured, Takes, measure, samples
 from ..cinema.score import geometry_scores
 from ..cinema.sizes import Size, size_of
 from ..cinema.space import Stage, nearby, stage_of
-from ..cinema.subject import Subject, person, place, thing
+from ..cinema.subject import Subject, group, person, place, thing
 from ..cinema.track import CameraTrack
 from ..lang.ir import Shot, Target
 from ..library import Catalog
@@ -37,6 +37,7 @@ _HOPE = 0.8  # of the share that was good so far: what is counted on in the next
 _MOST = 10  # candidates in one round, for each that is wanted
 _FEW = 8  # with fewer takes than this, ones that only look less well are let back in
 _MARGIN = 0.22  # radius of a person in somebody else's way, metres
+_NECK = 0.09  # of one over whose shoulder one looks
 
 
 @dataclass(frozen=True, eq=False)
@@ -109,13 +110,42 @@ def propose_cameras(shot: Shot, stories: Sequence[StoryProposal], filming: Filmi
 
 def subject_of(shot: Shot, story: StoryProposal, filming: Filming) -> Subject:
     """Whom or what the shot's cameras are about."""
+    if shot.view in ("two-shot", "group"):
+        everybody = _together(shot, story, filming)
+        return everybody if everybody is not None else _focused(shot, story, filming)
+    subject = _focused(shot, story, filming)
+    owner = shot.whose[0] if shot.view and shot.whose else ""
+    if owner not in story.performances or owner == subject.name:
+        return subject
+    return replace(subject, via=_person(owner, story, filming).landmarks["eyes"])
+
+
+def _person(name: str, story: StoryProposal, filming: Filming) -> Subject:
+    acted = story.performances[name]
+    return person(name, filming.skeletons[name], acted.world_from_joint, acted.position, acted.heading)
+
+
+def _together(shot: Shot, story: StoryProposal, filming: Filming) -> Subject | None:
+    """Two people, or all, as one subject: those of the line first, then who is nearest to them."""
+    first = [name for name in shot.whose if name in story.performances]
+    if shot.focus is not None and shot.focus.path[-1] in story.performances:
+        first.insert(0, shot.focus.path[-1])
+    people = {name: _person(name, story, filming) for name in story.performances}
+    if not people:
+        return None
+    middle = people[(first or list(people))[0]].position.mean(axis=0)
+    away = {n: float(np.linalg.norm(p.position.mean(axis=0) - middle)) for n, p in people.items()}
+    by_distance = sorted(people, key=lambda name: away[name])
+    order = list(dict.fromkeys((*first, *by_distance)))
+    return group([people[name] for name in (order[:2] if shot.view == "two-shot" else order)])
+
+
+def _focused(shot: Shot, story: StoryProposal, filming: Filming) -> Subject:
     focus = shot.focus
     if focus is None or _establishes(shot, story):
         return _room_subject(filming, story.frames)
     if focus.kind == "character" and focus.path[-1] in story.performances:
-        acted = story.performances[focus.path[-1]]
-        skeleton = filming.skeletons[focus.path[-1]]
-        return person(focus.path[-1], skeleton, acted.world_from_joint, acted.position, acted.heading)
+        return _person(focus.path[-1], story, filming)
     item = find_object(filming.world, focus)
     return (
         _room_subject(filming, story.frames) if item is None else _thing_subject(item, story, filming.world)
@@ -241,13 +271,15 @@ def _takes(shot: Shot, subject: Subject, shooting: Shooting, story: StoryProposa
         item = find_object(filming.world, shot.focus)
         ignore = item.id if item is not None else None
     others = []
+    seen = {subject.name, *subject.heads, *(shot.whose if shot.view == "pov" else ())}
     for name, acted in story.performances.items():
-        if name != subject.name:
+        if name not in seen:
             joints = acted.world_from_joint
             crown = joints[:, JOINT["head"], :3, 3].astype(float) + np.array((0.0, 0.0, 0.12))
             foot = joints[:, JOINT["hips"], :3, 3].astype(float)
             foot[:, 2] = acted.position[:, 2]
-            others.append((foot, crown, _MARGIN))
+            shoulder = shot.view == "ots" and name in shot.whose
+            others.append((foot, crown, _NECK if shoulder else _MARGIN))
     window = shooting.window(samples(subject.frames), subject.frames)
     return Takes(
         shooting.track,
@@ -259,6 +291,7 @@ def _takes(shot: Shot, subject: Subject, shooting: Shooting, story: StoryProposa
         tuple(others),
         ignore,
         story.interest,
+        view=shot.view,
     )
 
 
@@ -311,5 +344,6 @@ def _proposal(index: int, batch: _Batch, row: int, shot: Shot) -> CameraProposal
             track.position[row], track.rotation[row], track.focal[row], track.look_at[row], track.sensor
         ),
         hidden_walls=batch.measured.hidden[row],
+        unseen=shot.whose[0] if shot.view == "pov" and shot.whose else "",
         measures=values,
     )

@@ -27,6 +27,7 @@ REASONS = (
     "too_far_outside",
     "subject_out_of_frame",
     "subject_hidden",
+    "wrong_view",
     "wrong_size",
     "wrong_angle",
     "too_fast",
@@ -85,8 +86,8 @@ def _through(height: NDArray[np.float64], ceiling: float) -> NDArray[np.bool_]:
 
 
 def _arm(shooting: Shooting) -> float:
-    """The paper's close-ups stand within arm's reach."""
-    return 0.5 if shooting.rig == "paper" else 1.0
+    """The paper's close-ups stand within arm's reach; eyes come as near to things as heads do."""
+    return 0.5 if shooting.rig == "paper" or shooting.view == "pov" else 1.0
 
 
 def _first(asked: dict[str, NDArray[np.bool_]], count: int) -> NDArray[np.int64]:
@@ -103,6 +104,7 @@ def reasons(shooting: Shooting, measured: Measured, subject: Subject) -> NDArray
     paper = shooting.rig == "paper"
     own = length(track.position - subject.landmarks["eyes"][None]).min(axis=1)
     moving = np.array([family(m) in ("push", "pull", "zoom", "tilt", "pan") for m in shooting.movements])
+    moving |= shooting.view == "pov"  # its owner goes nearer, or farther
     keeps = np.array([family(m) in ("follow", "arc") for m in shooting.movements])
     drift = np.where(moving, 0.0, v["size_drift"])
     holds = np.where(keeps & (not paper), 0.45, 0.9)
@@ -112,6 +114,7 @@ def reasons(shooting: Shooting, measured: Measured, subject: Subject) -> NDArray
         "in_person": (measured.people < _NEAR_PERSON) | ((own < _NEAR_FACE) & (subject.kind == "person")),
         "subject_out_of_frame": v["in_frame"] < np.where(keeps, 0.85, 0.5 if walked > 0.5 else 0.7),
         "subject_hidden": (v["visibility"] < 0.6) | (v["head_visible"] < 0.5) | (v["foreground"] > 0.5),
+        "wrong_view": v["view"] < 0.7,
         "wrong_size": (v["size_error"] > (0.6 if paper else 0.25)) | (drift > holds),
         "wrong_angle": _wrong_angle(shooting, v, subject),
         "too_fast": (v["speed"] > _FASTEST) | (v["angular_speed"] > _TURNS),

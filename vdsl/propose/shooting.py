@@ -16,6 +16,7 @@ from ..cinema.subject import Subject, anchor
 from ..cinema.track import CameraTrack
 from ..lang.ir import Shot
 from .drawing import AZIMUTHS, Sample
+from .views import eyes_track, over_shoulder, through_eyes
 
 Array = NDArray[np.float64]
 
@@ -42,7 +43,7 @@ class Shooting:
     order: [P] which of the given rows each is; movements, scales, angles: words, P each
     key: frame the framing is of; draw: what was drawn, all [P]; lifted: radians off the asked angle to
     stay above the floor; relative: azimuth from the subject's heading, radians
-    floor: height of the subject's floor, above which cameras stay
+    floor: height of the subject's floor, above which cameras stay; view: as in the shot
     """
 
     rig: str
@@ -57,6 +58,7 @@ class Shooting:
     relative: Array
     height: Array
     floor: float = 0.0
+    view: str = ""
 
     @property
     def strata(self) -> NDArray[np.int64]:
@@ -80,6 +82,7 @@ class Shooting:
             self.relative[rows],
             self.height[rows],
             self.floor,
+            self.view,
         )
 
     def window(self, at: NDArray[np.int64], frames: int) -> NDArray[np.bool_]:
@@ -145,7 +148,8 @@ def shoot(
             local = np.flatnonzero((sample.movement[rows] == m) & (sample.scale[rows] == s))
             if len(local):
                 parts.append(_shoot_one(shot, subject, sample, rows, local, movement, scale, rig, film, fps))
-    return _raised(parts[0] if len(parts) == 1 else _joined(parts), floor)
+    found = parts[0] if len(parts) == 1 else _joined(parts)
+    return _raised(replace(found, view=shot.view), floor)
 
 
 def _raised(shooting: Shooting, floor: float) -> Shooting:
@@ -174,7 +178,7 @@ def _shoot_one(
     kind, last = family(movement), subject.frames - 1
     key = sample.key[i].copy()
     on = sample.on[i]
-    if kind in ("zoom", "follow") or (rig == "paper" and kind != "static"):
+    if (kind in ("zoom", "follow") and shot.view != "pov") or (rig == "paper" and kind != "static"):
         key[:] = 0
     if kind in ("tilt", "pan"):
         key[:] = on
@@ -200,7 +204,23 @@ def _shoot_one(
         path = anchor(subject, size.upper, size.lower, fps)
         asked = np.array([CINEMA_THETA[a] for a in angles])
         levels = _levels(subject, angles, at)
-        framing = rig_cinema.frame(subject, size, path, at, asked, phi, focal, film, lead, shot.roll, levels)
+
+        def framed(
+            phi: Array, focal: Array, column: Array | None = None, down: Array | float = 0.0
+        ) -> rig_cinema.Framing:
+            polar = asked - np.where(asked == np.pi / 2, down, 0.0)
+            return rig_cinema.frame(
+                subject, size, path, at, polar, phi, focal, film, lead, shot.roll, levels, column
+            )
+
+        if shot.view == "pov" and subject.via is not None:
+            framing, phi, focal = through_eyes(subject, size, path, at, shot.lens, film)
+        elif shot.view == "ots" and subject.via is not None:
+            framing, phi, focal = over_shoulder(
+                subject, size, path, at, shot.lens, film, on, sample.travel[i], framed
+            )
+        else:
+            framing = framed(phi, focal)
         r, theta, offset, lifted = framing.r * sample.reach[i], framing.theta, framing.offset, framing.lifted
         height = np.zeros(len(i))
         if kind in ("push", "pull"):
@@ -209,7 +229,10 @@ def _shoot_one(
     draw = Draw(
         r, theta, phi, focal, offset, sample.lam[i], mu, _turn(kind, sample.turn[i]), travel, before, key, on
     )
-    track = track_of(movement, path, draw, film, shot.roll)
+    if shot.view == "pov" and subject.via is not None:
+        track = eyes_track(subject, path, draw, film, shot.roll, kind == "follow", fps)
+    else:
+        track = track_of(movement, path, draw, film, shot.roll)
     n = len(i)
     return Shooting(
         rig, track, local, (movement,) * n, (scale,) * n, angles, np.where(key == 1, last, 0), draw, lifted,

@@ -52,7 +52,9 @@ def assemble(world: World, bodies: Mapping[str, Body]) -> StagedScene:
         joints.append(body.joints + np.int32(first_joint[name]))
         weights.append(body.weights)
         objects.append(np.full(len(body.mesh.faces), object_ids[name], np.int32))
-    fitting: list[NDArray[np.int32]] = [np.full(len(m.faces), LOOSE, np.int32) for m in meshes]
+    fitting: list[NDArray[np.int32]] = [
+        np.full(len(m.faces), LOOSE - 1 - k, np.int32) for k, m in enumerate(meshes)
+    ]
     prop_entry: dict[int, int] = {}
     for thing in world.objects:
         if thing.mesh is None:

@@ -158,7 +158,7 @@ def test_documented_measures_are_the_measures() -> None:
     section = DOCS.read_text("utf-8").split("## Measures of a take", 1)[1].split("\n## ", 1)[0]
     documented = re.findall(r"^\| `([^`]+)` \|", section, re.MULTILINE)
     assert documented == [*dict.fromkeys(documented)]
-    assert set(documented) == {*MEASURES, "geometry"}
+    assert set(documented) == {*MEASURES, "picture_visibility", "geometry"}
 
 
 @pytest.mark.parametrize(

@@ -32,7 +32,7 @@ from ..propose.story import advance, propose
 from ..propose.types import CameraProposal, ProposalGrid, StoryProposal
 from ..stage.assemble import StagedScene
 from ..stage.models import check_models
-from .edit import Edited, Reel, candidates, cut_findings, edited
+from .edit import CANDIDATES, Edited, Reel, candidates, cut_findings, edited
 from .filming import Camerawork
 from .judging import DiscriminatorJudge, GeometryJudge, Judge
 from .options import Options
@@ -40,6 +40,7 @@ from .progress import Progress, Silence, StageClock
 from .script import Checked, ScriptError, load_storyboard
 from .selection import choose_takes
 from .staging import Stagehand
+from .witness import Vetted, vet
 
 #: Proposals drawn and judged at a time: bounds memory, and lets progress be seen.
 _JUDGED_AT_ONCE = 16
@@ -174,7 +175,9 @@ def _film_all(
     for act, shot, grid in _proposed(acts, clock):
         if plan is None:
             scores = _scores(grid, act, shot, judge, camerawork, clock)
-            chosen = choose_takes(grid.cameras, scores, shot.takes)
+            vetted = _vetted(grid, scores, shot.takes, act, shot, camerawork, clock)
+            chosen = choose_takes(grid.cameras, vetted.order, shot.takes)
+            grid = vetted.counted(grid, chosen)
         else:
             scores, chosen = plan.scores[shot.id], plan.takes[shot.id]
         reel.add(act.line, shot, grid, scores, chosen[:1], act.filming)
@@ -196,8 +199,10 @@ def _edit(acts: list[Act], judge: Judge, camerawork: Camerawork, clock: StageClo
     reel, scores, takes = Reel(), dict[str, NDArray[np.float64]](), dict[str, list[int]]()
     for act, shot, grid in _proposed(acts, clock):
         scores[shot.id] = found = _scores(grid, act, shot, judge, camerawork, clock)
-        takes[shot.id] = choose_takes(grid.cameras, found, shot.takes)
-        reel.add(act.line, shot, grid, found, candidates(grid.cameras, found, shot.takes), act.filming)
+        vetted = _vetted(grid, found, CANDIDATES, act, shot, camerawork, clock)
+        takes[shot.id] = choose_takes(grid.cameras, vetted.order, shot.takes)
+        some = candidates(grid.cameras, vetted.order, shot.takes, vetted.failed)
+        reel.add(act.line, shot, grid, found, some, act.filming)
     with clock.spent("edit", len(reel.slots), quiet=True):
         return edited(reel.slots, scores, takes)
 
@@ -229,6 +234,20 @@ def _scores(
         with clock.spent("rank", len(cameras)):
             parts.append(judge.scores(cameras, frames))
     return np.concatenate(parts)
+
+
+def _vetted(
+    grid: ProposalGrid,
+    scores: NDArray[np.float64],
+    count: int,
+    act: Act,
+    shot: Shot,
+    camerawork: Camerawork,
+    clock: StageClock,
+) -> Vetted:
+    """The proposals that may be kept, looked at in small pictures."""
+    with clock.spent("vet", 1, quiet=True):
+        return vet(grid, scores, count, (act.staged, shot, act.filming), camerawork)
 
 
 def _film(

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from ..cinema.measures import MEASURES
 from ..cinema.moves import family
 from ..cinema.score import geometry_score
 from ..cinema.telling import NOTES, advantages, compared, faults, is_good, penalties, terms
@@ -110,7 +111,7 @@ def _take_facts(folder: Path, take: Mapping[str, Any]) -> TakeFacts:
         float(take["score"]),
         {k: take[k] for k in ("movement", "scale", "angle")},
         take.get("achieved"),
-        {name: measures.get(name, 0.0) for name in NOTES},
+        {name: 0.0 for name in MEASURES} | measures,
         dict(track["params"]),
         take.get("logit"),
     )
@@ -156,6 +157,7 @@ def _told(facts: ShotFacts, k: int) -> dict[str, Any]:
                 "fine": is_good(name, take.measures[name]),
             }
             for name in NOTES
+            if name in take.measures
         },
         "terms": [
             {

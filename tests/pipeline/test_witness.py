@@ -1,0 +1,95 @@
+"""Takes whose subject is hidden in the picture give way, however clear the lines of sight were."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from vdsl.lang import Source
+from vdsl.pipeline.compile import Act, stage_acts
+from vdsl.pipeline.filming import Camerawork
+from vdsl.pipeline.judging import GeometryJudge
+from vdsl.pipeline.script import check_source
+from vdsl.pipeline.selection import choose_takes
+from vdsl.pipeline.witness import MEASURE, REASON, vet
+from vdsl.propose.story import propose
+from vdsl.propose.types import ProposalGrid
+
+STORY = """\
+storyboard "Seen"
+proposals 24
+takes 3
+character anna = woman
+scene kitchen = apartment.kitchen
+anna at door facing window
+(anna wave) / (SHOT eye-level) OPTIONS
+"""
+
+
+@pytest.fixture(scope="module")
+def camerawork() -> Camerawork:
+    return Camerawork("cpu")
+
+
+def proposed(shot: str, options: str = "") -> tuple[Act, ProposalGrid]:
+    text = STORY.replace("SHOT", shot).replace("OPTIONS", options)
+    (act,) = stage_acts(check_source(Source("seen.vds", text)))
+    return act, propose(act.line, act.line.shots[0], act.state, act.filming)
+
+
+def test_what_is_seen_is_as_was_promised(camerawork: Camerawork) -> None:
+    act, grid = proposed("static medium")
+    shot = act.line.shots[0]
+    scores = GeometryJudge().scores(grid.cameras, None)
+    vetted = vet(grid, scores, 3, (act.staged, shot, act.filming), camerawork)
+    assert vetted.failed == ()
+    assert np.array_equal(vetted.order, scores)
+    looked = [c.measures for c in grid.cameras if MEASURE in c.measures]
+    assert len(looked) == 3
+    for measures in looked:
+        assert measures[MEASURE] == pytest.approx(measures["visibility"], abs=0.15)
+
+
+def test_a_subject_behind_a_wall_gives_way_to_the_next(camerawork: Camerawork) -> None:
+    """The walls that were promised to be taken away are put back before the best takes."""
+    act, grid = proposed("static full", "lens 50mm")
+    shot = act.line.shots[0]
+    scores = GeometryJudge().scores(grid.cameras, None)
+    scores += np.array([c.hidden_walls.any() for c in grid.cameras])  # whoever judges likes these best
+    outside = choose_takes(grid.cameras, scores, 2)
+    assert all(grid.cameras[i].hidden_walls.any() for i in outside)
+    cameras = list(grid.cameras)
+    for i in outside:
+        walled = np.zeros_like(cameras[i].hidden_walls)
+        cameras[i] = replace(cameras[i], hidden_walls=walled, measures=dict(cameras[i].measures))
+    grid = replace(grid, cameras=tuple(cameras))
+    assert set(choose_takes(grid.cameras, scores, 3)) >= set(outside)
+    vetted = vet(grid, scores, 3, (act.staged, shot, act.filming), camerawork)
+    chosen = choose_takes(grid.cameras, vetted.order, 3)
+    assert set(vetted.failed) >= set(outside)
+    assert not set(chosen) & set(outside)
+    assert all(cameras[i].measures[MEASURE] < 0.5 for i in outside)
+    assert all(cameras[i].measures[MEASURE] >= 0.5 for i in chosen)
+    assert vetted.counted(grid, chosen).rejected[REASON] == len(vetted.failed)
+    # where nothing else is left they stay
+    alone = replace(grid, cameras=tuple(cameras[i] for i in outside))
+    worst = vet(alone, scores[outside], 1, (act.staged, shot, act.filming), camerawork)
+    assert len(choose_takes(alone.cameras, worst.order, 1)) == 1
+    assert worst.counted(alone, choose_takes(alone.cameras, worst.order, 1)).rejected[REASON] == 1
+
+
+def test_things_are_looked_at_and_places_are_not(camerawork: Camerawork) -> None:
+    act, grid = proposed("static close-up", "focus table")
+    scores = GeometryJudge().scores(grid.cameras, None)
+    vet(grid, scores, 2, (act.staged, act.line.shots[0], act.filming), camerawork)
+    shares = [c.measures[MEASURE] for c in grid.cameras if MEASURE in c.measures]
+    assert len(shares) >= 2
+    assert min(shares) > 0.5
+    text = STORY.replace("(anna wave) / (SHOT eye-level) OPTIONS", "/ (static wide eye-level)")
+    (act,) = stage_acts(check_source(Source("seen.vds", text)))
+    grid = propose(act.line, act.line.shots[0], act.state, act.filming)
+    scores = GeometryJudge().scores(grid.cameras, None)
+    vet(grid, scores, 2, (act.staged, act.line.shots[0], act.filming), camerawork)
+    assert not any(MEASURE in c.measures for c in grid.cameras)

@@ -1,0 +1,178 @@
+"""Whether takes show their subject, by the object ids of small pictures of them: sight tested, not hoped for.
+
+Cameras are proposed by lines of sight past upright boxes; curtains, branches and arms are none. Assumes
+judged proposals. Guarantees that of the takes about to be kept, those whose subject is less in the picture
+than was promised give way to the next best, where there are such.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from runtime.mesh import Mesh
+
+from ..cinema.moves import family
+from ..cinema.subject import Subject
+from ..cinema.track import camera_axes, project
+from ..lang.ir import Shot
+from ..propose.cameras import Filming, find_object, subject_of
+from ..propose.types import CameraProposal, ProposalGrid, StoryProposal
+from ..stage.assemble import StagedScene
+from .filming import SEGMENTS, Camerawork, segment_frames, story_palettes
+from .selection import choose_takes
+
+#: The reason under which those that fail are counted, and the measure of those that were looked at.
+REASON = "hidden_in_picture"
+MEASURE = "picture_visibility"
+_SIZE = (96, 54)
+_POINTS = 1500  # of the subject's surface
+_PROMISED = 0.6  # least visibility of what is offered
+_SLACK = 0.1  # by how much pixels may fall short of it
+_ROUNDS = 6
+_OUT = 10.0  # taken from the score of what fails, so that anything else goes before it
+
+
+@dataclass(frozen=True, eq=False)
+class Vetted:
+    """order: [P], scores to choose takes by; failed: those that are less seen than was promised."""
+
+    order: NDArray[np.float64]
+    failed: tuple[int, ...]
+
+    def counted(self, grid: ProposalGrid, kept: Sequence[int]) -> ProposalGrid:
+        """The grid with what was replaced among the rejected."""
+        gone = len(set(self.failed) - set(kept))
+        if not gone:
+            return grid
+        return replace(grid, rejected=dict(sorted((grid.rejected | {REASON: gone}).items())))
+
+
+def vet(
+    grid: ProposalGrid,
+    scores: NDArray[np.float64],
+    count: int,
+    scene: tuple[StagedScene, Shot, Filming],
+    camerawork: Camerawork,
+) -> Vetted:
+    """Look at the takes about to be kept, and at those that would follow, until none more has to go.
+
+    Notes the share of what was looked at among its measures.
+    """
+    order = np.asarray(scores, float).copy()
+    looked: set[int] = set()
+    failed: list[int] = []
+    for _ in range(_ROUNDS):
+        fresh = [i for i in choose_takes(grid.cameras, order, count) if i not in looked]
+        if not fresh:
+            break
+        looked.update(fresh)
+        for i, share in zip(fresh, _shares(grid, fresh, scene, camerawork), strict=True):
+            if np.isnan(share):
+                continue
+            measures = grid.cameras[i].measures
+            measures[MEASURE] = float(share)
+            if share < min(_PROMISED, measures["visibility"]) - _SLACK:
+                order[i] -= _OUT
+                failed.append(i)
+    return Vetted(order, tuple(failed))
+
+
+def _shares(
+    grid: ProposalGrid,
+    chosen: Sequence[int],
+    scene: tuple[StagedScene, Shot, Filming],
+    camerawork: Camerawork,
+) -> NDArray[np.float64]:
+    """Of each proposal the share of its subject's outline in which the subject is seen; NaN without one."""
+    staged, shot, filming = scene
+    cameras = tuple(grid.cameras[i] for i in chosen)
+    stories = {s.index: s for s in grid.story}
+    surfaces = {c.story: _surface(staged, shot, stories[c.story], filming) for c in cameras}
+    if all(s is None for s in surfaces.values()):
+        return np.full(len(cameras), np.nan)
+    ids = camerawork.judge_ids(staged, shot.style, grid.story, cameras, _SIZE)
+    return np.array([_share(c, surfaces[c.story], picture) for c, picture in zip(cameras, ids, strict=True)])
+
+
+@dataclass(frozen=True, eq=False)
+class _Surface:
+    """Points of a subject's surface at the segments' frames [SEGMENTS, V, 3], and its id."""
+
+    id: int
+    points: NDArray[np.float64]
+
+
+def _surface(staged: StagedScene, shot: Shot, story: StoryProposal, filming: Filming) -> _Surface | None:
+    """None for a place, which is everything there is."""
+    subject = subject_of(shot, story, filming)
+    number = _id_of(subject, staged, shot, filming)
+    if number is None:
+        return None
+    frames = segment_frames(story.frames)
+    still = _vertices(staged.render.static, staged.render.static_object, number)
+    if len(still):
+        points = np.asarray(staged.render.static.vertices[still], float)
+        return _Surface(number, np.tile(points, (len(frames), 1, 1)))
+    moving = _vertices(staged.render.skinned, staged.render.skinned_object, number)
+    if not len(moving):
+        return None
+    matrices = story_palettes(staged, story, frames)[:, staged.render.joints[moving]]  # [F, V, 4, 3, 4]
+    blended = np.einsum("fvjab,vj->fvab", matrices, staged.render.weights[moving])
+    rest = staged.render.skinned.vertices[moving]
+    return _Surface(number, np.einsum("fvab,vb->fva", blended[..., :3], rest).astype(float) + blended[..., 3])
+
+
+def _id_of(subject: Subject, staged: StagedScene, shot: Shot, filming: Filming) -> int | None:
+    if subject.kind == "person":
+        return staged.object_ids.get(subject.name)
+    item = find_object(filming.world, shot.focus) if subject.kind == "thing" and shot.focus else None
+    return item.id if item is not None else None
+
+
+def _vertices(mesh: Mesh, owner: NDArray[np.int32], number: int) -> NDArray[np.int64]:
+    """Some of the vertices of an object, spread over it."""
+    found = np.unique(mesh.faces[owner == number])
+    step = max(1, len(found) // _POINTS)
+    return np.asarray(found[::step], np.int64)
+
+
+def _share(camera: CameraProposal, surface: _Surface | None, ids: NDArray[np.int32]) -> float:
+    """Over the frames in which the subject is meant to be seen; ids: [SEGMENTS, H, W]."""
+    if surface is None:
+        return float("nan")
+    track, frames = camera.track, segment_frames(len(camera.track.focal))
+    xy, depth = project(
+        surface.points, track.position[frames], camera_axes(track.rotation[frames]), track.focal[frames],
+        track.sensor,
+    )  # fmt: skip
+    height, width = ids.shape[1:]
+    mine = _grown(ids == surface.id)
+    shares = []
+    for k in _meant(camera):
+        inside = (depth[k] > 0.05) & ((xy[k] > 0) & (xy[k] < 1)).all(axis=-1)
+        cells = np.unique((xy[k][inside] * (width, height)).astype(int) @ np.array((1, width)))
+        if len(cells):
+            shares.append(float(mine[k].ravel()[cells].mean()))
+    return float(np.mean(shares)) if shares else 0.0
+
+
+def _meant(camera: CameraProposal) -> range:
+    """The segments in which a take is on its subject: the first or the last two of a tilt or a pan."""
+    if family(camera.movement) not in ("tilt", "pan"):
+        return range(SEGMENTS)
+    return range(SEGMENTS - 2, SEGMENTS) if camera.params.get("ending") == "on" else range(2)
+
+
+def _grown(mask: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Masks [N, H, W] grown by one pixel: outlines are no wider than that, and belong to either side."""
+    padded = np.pad(mask, ((0, 0), (1, 1), (1, 1)))
+    out = mask.copy()
+    height, width = mask.shape[1:]
+    for y in range(3):
+        for x in range(3):
+            out |= padded[:, y : y + height, x : x + width]
+    return out

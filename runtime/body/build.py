@@ -22,7 +22,7 @@ from .skeleton import PALETTE, Skeleton
 from .spec import BodySpec
 
 #: Raised with every change of shape, so that old cache files are not read.
-VERSION = 23
+VERSION = 24
 
 
 @dataclass(frozen=True, eq=False)

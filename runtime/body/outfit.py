@@ -133,7 +133,8 @@ def garment(
     if tail is not None:
         body = solid
         solid = lambda p: smooth_min(body(p), tail(p), 0.03 * f.p.height)  # noqa: E731
-    patch = surface_of(f, solid, hem - 0.04 * f.p.height, f.level(1.35), True, faces)
+    step = 0.0120 if tail is None else 0.0150
+    patch = surface_of(f, solid, hem - 0.04 * f.p.height, f.level(1.35), True, faces, step)
     patch = clip(
         patch, both(both(above(hem, slope), along_arm(f, end, 0.03 + flare / f.p.height)), neck_line)
     )

@@ -15,13 +15,15 @@ from typer.testing import CliRunner
 import vdsl
 from vdsl.cinema.continuity import RULES, findings
 from vdsl.cinema.edges import LOOKING, Edge
+from vdsl.cinema.track import CameraTrack, look_at_rotation
 from vdsl.cli import app
 from vdsl.emit.storyboard_json import script_digest
 from vdsl.lang import Settings
 from vdsl.lang.codes import CODES
-from vdsl.pipeline.edit import Slot, best_path, cut_findings, edit, edited
+from vdsl.pipeline.edit import Slot, best_path, candidates, cut_findings, edit, edited
 from vdsl.pipeline.rehearsal import SAID, rehearse
 from vdsl.pipeline.script import load_storyboard
+from vdsl.propose.types import CameraProposal
 
 COFFEE = Path(__file__).parents[2] / "examples" / "coffee.vds"
 STORY = """\
@@ -128,6 +130,25 @@ def test_the_chosen_take_comes_first_and_no_more_are_kept_than_were_asked() -> N
     ]
     result = edited(slots, {}, {"s1": [0], "s2": [7, 3], "s3": []})
     assert result.takes == {"s1": [0], "s2": [5, 7], "s3": []}
+
+
+def test_what_must_not_be_shown_is_no_candidate_unless_there_is_nothing_else() -> None:
+    cameras = propose_some(6)
+    scores = np.linspace(0.9, 0.4, 6)
+    assert candidates(cameras, scores, 2) == list(range(6))
+    assert candidates(cameras, scores, 2, failed={1, 4}) == [0, 2, 3, 5]
+    assert candidates(cameras, scores, 2, failed=set(range(6))) == list(range(6))
+
+
+def propose_some(count: int) -> tuple[CameraProposal, ...]:
+    """Cameras around a point, all different."""
+    out = []
+    for i in range(count):
+        position = np.tile((3 * np.cos(i), 3 * np.sin(i), 1.5), (4, 1))
+        aim = np.zeros((4, 3))
+        track = CameraTrack(position, look_at_rotation(position, aim), np.full(4, 50.0), aim, (36.0, 20.25))
+        out.append(CameraProposal(i, 0, "static", "medium", "eye-level", {}, track, np.zeros(0, bool)))
+    return tuple(out)
 
 
 # -- on the demo -------------------------------------------------------------------------------

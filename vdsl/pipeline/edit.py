@@ -7,7 +7,7 @@ dissolve, a wipe or a fade, and between scenes, everything may change.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -141,10 +141,16 @@ class Edited:
     trades: tuple[Trade, ...]
 
 
-def candidates(cameras: tuple[CameraProposal, ...], scores: Array, takes: int) -> list[int]:
-    """Indices of the proposals an edit chooses from: those that would be kept as takes, then further ones."""
+def candidates(
+    cameras: tuple[CameraProposal, ...], scores: Array, takes: int, failed: Collection[int] = ()
+) -> list[int]:
+    """Indices of the proposals an edit chooses from: those that would be kept as takes, then further ones.
+
+    failed: proposals not to be shown for the sake of a cut, unless there are no others
+    """
     kept = choose_takes(cameras, scores, takes)
-    return kept + [i for i in choose_takes(cameras, scores, CANDIDATES) if i not in kept]
+    all_of_them = kept + [i for i in choose_takes(cameras, scores, CANDIDATES) if i not in kept]
+    return [i for i in all_of_them if i not in failed] or all_of_them
 
 
 def edited(slots: Sequence[Slot], scores: Mapping[str, Array], takes: Mapping[str, list[int]]) -> Edited:

@@ -75,16 +75,20 @@ class Studio:
         heads = [f"{name} · {way.variant} · {way.frames / trial.act.filming.fps:.1f} s" for way in trial.ways]
         return stacked(list(zip(heads, rows, strict=True)))
 
-    def actions(self, names: Sequence[str], cell: tuple[int, int] = (150, 190)) -> Image.Image:
+    def actions(
+        self, names: Sequence[str], cell: tuple[int, int] = (150, 190), poses: int = POSES
+    ) -> Image.Image:
         """Many actions, one short strip each: their first variant."""
         rows = []
         for name in names:
             trial = try_action(name, self.catalog, CAST, self.own)
-            rows.append((name, self._strip(trial, trial.ways[0], cell)))
+            rows.append((name, self._strip(trial, trial.ways[0], cell, poses)))
         return stacked(rows)
 
-    def _strip(self, trial: Trial, way: StoryProposal, cell: tuple[int, int]) -> Image.Image:
-        frames = np.round(np.linspace(0.04, 0.96, POSES) * (way.frames - 1)).astype(int)
+    def _strip(
+        self, trial: Trial, way: StoryProposal, cell: tuple[int, int], poses: int = POSES
+    ) -> Image.Image:
+        frames = np.round(np.linspace(0.04, 0.96, poses) * (way.frames - 1)).astype(int)
         eyes = pose_eyes(trial, way, frames, cell)
         return row(self.stills(trial.staged, eyes, cell, way, frames.tolist()))
 

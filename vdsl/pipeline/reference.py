@@ -137,18 +137,18 @@ def draw(catalog: Catalog, folder: Path) -> None:
     studio = Studio(catalog)
 
     def save(name: str, image: object) -> None:
-        image.save(folder / f"{name}.jpg", quality=82, optimize=True)  # type: ignore[attr-defined]
+        image.save(folder / f"{name}.jpg", quality=76, optimize=True)  # type: ignore[attr-defined]
         print(folder / f"{name}.jpg", flush=True)
 
     for group in GROUPS:
         members = [row.name for row in _of(catalog, "action", ActionRow) if row.group == group]
         if members:
-            save(f"actions-{group}", studio.actions(members))
-    save("cast", studio.cast(list(catalog.names("cast")), 420))
+            save(f"actions-{group}", studio.actions(members, (112, 140), 6))
+    save("cast", studio.cast(list(catalog.names("cast")), 330))
     for file, props in sorted(_by_file(_of(catalog, "prop", PropRow)).items()):
-        save(f"props-{file}", studio.props([row.name for row in props], 170, 7))
+        save(f"props-{file}", studio.props([row.name for row in props], 140, 8))
     for name in catalog.names("set"):
-        save(f"set-{name}", studio.set(name, width=760))
+        save(f"set-{name}", studio.set(name, width=560))
 
 
 def main() -> None:

@@ -14,7 +14,8 @@ from .feet import Feet
 from .hands import MIRROR
 from .manner import Manner
 from .postures import Row
-from .route import Flight, Leg, Route, Stance
+from .route import Route
+from .trail import Flight, Leg, Stance
 
 Array = NDArray[np.float64]
 

@@ -25,7 +25,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .curves import keyed, plateau, ramp, springy
-from .types import Timeline
+from .timeline import Timeline
 
 Array = NDArray[np.float64]
 

@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 from .curves import delayed, plateau, ramp, smooth, wander
 from .feelings import FEELINGS, Expression
 from .figure import Mimic
-from .rotations import turned, unit
-from .types import Talk
+from .rotations import rot_zy, turned, unit, unwrapped, wrap
+from .timeline import Talk
 
 Array = NDArray[np.float64]
 #: How far eyes, head and chest turn, radians.
@@ -205,3 +205,19 @@ def mimic(feeling: Felt, smile: Array, speech: Array) -> Mimic:
         * (1 - 0.35 * speech),
         sneer=np.clip(feeling["sneer"] + 0.4 * grin, 0.0, 1.0),
     )
+
+
+def relative_gaze(eye: Array, yaw: Array, tilt: Array, point: Array) -> tuple[Array, Array]:
+    """Turn to the left and down [T] from ``eye`` [T, 3] to ``point`` [(T,) 3], against a trunk that faces
+    ``yaw`` and is tipped forward by ``tilt``."""
+    d = point - eye
+    if tilt.any():
+        d = turned(np.swapaxes(rot_zy(yaw, tilt), -1, -2), d)
+        yaw = np.zeros_like(yaw)
+    turn = wrap(np.arctan2(d[..., 1], d[..., 0]) - yaw)
+    return unwrapped(turn), np.arctan2(-d[..., 2], np.hypot(d[..., 0], d[..., 1]))
+
+
+def fade(t: Array, start: float, end: float, lead: float = 0.35) -> Array:
+    """A gaze's weight: quickly there, quickly gone."""
+    return ramp(t, start, start + lead) * (1.0 - ramp(t, end - 0.5 * lead, end + 0.5 * lead))

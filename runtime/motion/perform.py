@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 from runtime.body.skeleton import JOINT
 
 from .acting import Performer
-from .plan import Plan, add_partner, begin, keep, plan_task
+from .plan import Plan, begin, keep
+from .planning import add_partner, plan_task
 from .scene import Scene, seeded
 from .types import (
     Actor,

@@ -9,9 +9,10 @@ from numpy.typing import NDArray
 
 from runtime.body.skeleton import JOINT
 
-from .contacts import SIDE, HandTracks, Held
+from .contacts import SIDE, HandTracks
 from .curves import ramp
 from .figure import Figure
+from .held import Held
 from .rotations import blend
 from .types import Point, PropState
 

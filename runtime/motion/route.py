@@ -14,11 +14,11 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from runtime.body.skeleton import JOINT, Skeleton
 from runtime.world import Stairs
 
-from .curves import ease, ramp, smooth, wander
-from .feet import Feet, Footing, Step, foot_track, rolled
+from .curves import ramp, smooth, wander
+from .feet import Step
+from .footfalls import paced, skipped
 from .gait import (
     WALK,
     Gait,
@@ -31,55 +31,16 @@ from .gait import (
     timing,
     tread,
 )
-from .postures import WAYS, Row, between, row
+from .postures import WAYS, between
 from .rotations import wrap
-from .types import FootMove, GaitStyle, Jump
+from .timeline import FootMove, Jump
+from .trail import RATE, Flight, Leg, Sit, Stance, Trail
+from .types import GaitStyle
 
 Array = NDArray[np.float64]
 Triple = tuple[float, float, float]
-#: Planning steps a second; finer than any frame rate in use.
-RATE = 60.0
 GRAVITY = 9.81
 _FACING = {"ahead": 0.0, "back": np.pi, "left": np.pi / 2, "right": -np.pi / 2}
-
-
-@dataclass(frozen=True)
-class Sit:
-    """Down onto a seat or up from it, between two times."""
-
-    start: float
-    end: float
-    down: bool
-    seat: Triple
-
-
-@dataclass(frozen=True)
-class Stance:
-    """A low posture taken (or left, for ``standing``) between two times, on a floor or bed of that height."""
-
-    start: float
-    end: float
-    name: str
-    ground: float
-
-
-@dataclass(frozen=True)
-class Leg:
-    """A stretch of the way in one gait and style, between two times."""
-
-    start: float
-    end: float
-    style: GaitStyle
-    gait: Gait
-
-
-@dataclass(frozen=True)
-class Flight:
-    """The body off the floor between two times, ``height`` metres up in the middle."""
-
-    start: float
-    end: float
-    height: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -98,114 +59,10 @@ class Going:
     stairs: tuple[Stairs, ...] = ()
 
 
-class Route:
+class Route(Trail):
     """Builds the root's way and the steps; ask :meth:`root` and :meth:`feet` when all is said."""
 
-    def __init__(
-        self,
-        skeleton: Skeleton,
-        position: Triple,
-        heading: float,
-        seat: Triple | None,
-        person: np.random.Generator,
-        posture: str = "standing",
-    ) -> None:
-        self.skeleton = skeleton
-        self.posture = posture
-        sits = posture == "sitting" and seat is not None
-        self.seat = seat if sits else None
-        self.floor = position[2]
-        self.hip = float(skeleton.bind[JOINT["thigh_l"]][1])
-        self.scale = skeleton.height / 1.7
-        self.splay = 0.14 + 0.08 * person.random(2)
-        self.uneven = 0.03 * (person.random() - 0.5)
-        self.now = 0.0
-        self.heading = heading
-        self.start_seat = self.seat
-        self.sits: list[Sit] = []
-        self.steps: list[Step] = []
-        self.palm_steps: list[Step] = []
-        self.stances: list[Stance] = []
-        self.legs: list[Leg] = []
-        self.flights: list[Flight] = []
-        self._xyz: list[Array] = []
-        self._yaw: list[Array] = []
-        self._starts: list[float] = []
-        self._moves: list[tuple[float, float, Array]] = []  # start, end, (x, y, z, yaw) on top
-        self._moved = np.zeros(4)
-        ground = seat[2] if seat is not None and not sits else self.floor
-        self.bed = ground
-        self.bedside: Array | None = None
-        self.at = np.array([*(self.seat or position)[:2], self.floor])
-        foot_at = self.at if self.seat is None else np.array([*self._before(self.seat, heading), self.floor])
-        self.rows: dict[str, Row] = {}
-        if self.low:
-            self.stances.append(Stance(-2e6, -1e6, posture, ground))
-        low = posture not in ("standing", "sitting")
-        self.feet_now = [
-            self._low(k, posture) if low else self._stance(foot_at, heading, k, 1.0) for k in (0, 1)
-        ]
-        pitches = [self.row(posture).feet[k][2] if low else 0.0 for k in (0, 1)]
-        self.first = [Footing(p, ground, q) for p, q in zip(self.feet_now, pitches, strict=True)]
-        self.pitch_now = pitches
-        self.palms_first = [Footing(self._palm(k)) for k in (0, 1)]
-        self.palms_now = [p.place for p in self.palms_first]
-
-    def row(self, posture: str) -> Row:
-        """The row of a low posture for this body."""
-        if posture not in self.rows:
-            self.rows[posture] = row(posture, self.skeleton)
-        return self.rows[posture]
-
-    @property
-    def low(self) -> bool:
-        """Whether one is neither standing nor on a seat."""
-        return self.posture not in ("standing", "sitting")
-
-    def _before(self, seat: Triple, heading: float) -> Array:
-        reach = seat_distance(self.skeleton, seat[2] - self.floor)
-        return np.array(seat[:2]) + reach * np.array([np.cos(heading), np.sin(heading)])
-
-    def _stance(self, xy: Array, yaw: float, foot: int, width: float, wide: float = 1.0) -> Triple:
-        """Where a foot stands under a body at ``xy`` facing ``yaw``; ``width`` 1 standing, less walking."""
-        m = 1.0 - 2.0 * foot
-        side = m * self.hip * (0.55 + 0.5 * width) * wide
-        ahead = m * self.uneven * width
-        c, s = np.cos(yaw), np.sin(yaw)
-        splay = m * self.splay[foot] * (0.4 + 0.6 * width)
-        return (float(xy[0] + ahead * c - side * s), float(xy[1] + ahead * s + side * c), float(yaw + splay))
-
-    def _from_root(self, ahead: float, left: float, turn: float, at: Array, yaw: float) -> Triple:
-        c, s = np.cos(yaw), np.sin(yaw)
-        return (float(at[0] + ahead * c - left * s), float(at[1] + ahead * s + left * c), float(yaw + turn))
-
-    def _low(self, foot: int, posture: str, at: Array | None = None, yaw: float | None = None) -> Triple:
-        """Where a foot lies in a low posture, so that its ankle is where the row says."""
-        r = self.row(posture)
-        ahead, out, pitch = r.feet[foot]
-        m = 1.0 - 2.0 * foot
-        back = float(rolled(self.skeleton, np.array(pitch))[0])
-        at, yaw = self.at if at is None else at, self.heading if yaw is None else yaw
-        place = self._from_root(ahead, m * out, m * r.splay, at, yaw)
-        return (place[0] - back * np.cos(place[2]), place[1] - back * np.sin(place[2]), place[2])
-
-    def _palm(self, hand: int, at: Array | None = None, yaw: float | None = None) -> Triple:
-        """Where a palm is planted on all fours."""
-        palms = self.row(self.posture).palms if self.low else None
-        out = palms[1] if palms is not None else self.hip
-        at, yaw = self.at if at is None else at, self.heading if yaw is None else yaw
-        return self._from_root(self._palm_ahead(), (1.0 - 2.0 * hand) * out, 0.0, at, yaw)
-
-    def _palm_ahead(self) -> float:
-        """How far before the root a palm is planted."""
-        palms = self.row(self.posture).palms if self.low else None
-        return palms[0] if palms is not None else 0.3
-
     # -- going -----------------------------------------------------------------------------
-
-    def wait(self, seconds: float) -> None:
-        """Stays."""
-        self.now += max(seconds, 0.0)
 
     def travel(
         self,
@@ -282,7 +139,7 @@ class Route:
         gait, style = going.gait, going.style
         side = 0 if turn > 0.25 else 1 if turn < -0.25 else int(rng.random() < 0.5) if rng else 0
         falls = (
-            _skipped(total, period) if gait.name == "skip" else _paced(total, period, gait.swing, style.limp)
+            skipped(total, period) if gait.name == "skip" else paced(total, period, gait.swing, style.limp)
         )
         times = np.arange(len(xyz)) / RATE
         for k, (foot, lift, land, stay) in enumerate(falls):
@@ -309,23 +166,6 @@ class Route:
             self.steps.append(Step(foot, self.now + lift, self.now + land, place, gait.run, ground, pitch,
                                    high, style.stiff))  # fmt: skip
             self.feet_now[foot], self.pitch_now[foot] = place, pitch
-
-    def _plant(self, hand: int, lift: float, land: float, place: Triple, ground: float) -> None:
-        self.palm_steps.append(Step(hand, lift, land, place, ground=ground, high=0.04))
-        self.palms_now[hand] = place
-
-    def _push(self, xyz: Array, yaw: Array) -> None:
-        self._starts.append(self.now)
-        self._xyz.append(xyz - self._moved[:3])
-        self._yaw.append(yaw - self._moved[3])
-
-    def _move(self, start: float, end: float, by: Array, turn: float) -> None:
-        """The root goes ``by`` (x, y) between two times, and turns; on top of all else."""
-        change = np.array([by[0], by[1], 0.0, turn])
-        self._moves.append((start, end, change))
-        self._moved = self._moved + change
-        self.at = self.at + change[:3]
-        self.heading += turn
 
     # -- single steps and jumps ------------------------------------------------------------
 
@@ -419,11 +259,6 @@ class Route:
 
     # -- beds ------------------------------------------------------------------------------
 
-    @property
-    def on_bed(self) -> bool:
-        """Whether one lies on something."""
-        return self.low and abs(self.bed - self.floor) > 0.05
-
     def lie(self, middle: Triple, head: float, duration: float) -> None:
         """Onto a bed beside which one stands: sits down on its edge, then swings the legs up and lies back.
 
@@ -494,56 +329,6 @@ class Route:
         """[2], where one stands to sit down."""
         return self._before(seat, heading)
 
-    def _shift(self, to: Array, duration: float) -> None:
-        t = np.arange(int(np.ceil(duration * RATE)) + 1) / RATE
-        share = ease(t / t[-1])
-        there = np.array([to[0], to[1], self.at[2]])
-        self._push(self.at + share[:, None] * (there - self.at), np.full(len(t), self.heading))
-        self.now += duration
-        self.at = there
-
-    # -- asking ----------------------------------------------------------------------------
-
-    def root(self, t: Array) -> tuple[Array, Array, Array]:
-        """Floor point [T, 2], heading [T] and height of the floor [T] at times ``t``; held before, between
-        and after."""
-        if not self._xyz:
-            base = np.broadcast_to([*self.at, self.heading], (len(t), 4)) - self._moved
-        else:
-            stamps = np.concatenate(
-                [s + np.arange(len(x)) / RATE for s, x in zip(self._starts, self._xyz, strict=True)]
-            )
-            xyz, yaw = np.concatenate(self._xyz), np.unwrap(np.concatenate(self._yaw))
-            columns = [*xyz.T, yaw]
-            base = np.stack([np.interp(t, stamps, c) for c in columns], axis=1)
-        out = base.copy()
-        for start, end, change in self._moves:
-            out += ramp(t, start, end)[:, None] * change
-        return out[:, :2], out[:, 3], out[:, 2]
-
-    def sitting(self, t: Array) -> Array:
-        """[T]: 0 standing .. 1 on the seat."""
-        share = np.full(len(t), 0.0 if self.start_seat is None else 1.0)
-        for sit in self.sits:
-            way = ramp(t, sit.start, sit.end)
-            share = share + (way if sit.down else -way)
-        return np.clip(share, 0.0, 1.0)
-
-    def seat_height(self, t: Array) -> Array:
-        """[T]: height of the seat that is or will be sat on."""
-        height = np.full(len(t), 0.45 if self.start_seat is None else self.start_seat[2])
-        for sit in self.sits:
-            height = np.where(t >= sit.start, sit.seat[2], height)
-        return height
-
-    def feet(self, t: Array) -> Feet:
-        """Both feet at times ``t`` [T]."""
-        return _tracks(t, self.first, self.steps)
-
-    def palms(self, t: Array) -> Feet:
-        """Both palms planted on the floor at times ``t`` [T]."""
-        return _tracks(t, self.palms_first, self.palm_steps)
-
 
 def _ahead(heading: float) -> Array:
     """[2], one metre ahead."""
@@ -556,51 +341,8 @@ def _turned(offset: Array, angle: float) -> Array:
     return np.array([c * offset[0] - s * offset[1], s * offset[0] + c * offset[1]])
 
 
-def _tracks(t: Array, first: list[Footing], steps: list[Step]) -> Feet:
-    ordered = sorted(steps, key=lambda s: s.lift)
-    tracks = [foot_track(t, first[k], [s for s in ordered if s.foot == k]) for k in (0, 1)]
-    return Feet(*(np.stack(parts) for parts in zip(*tracks, strict=True)))
-
-
 def _edge(old: str, new: str) -> tuple[float, float]:
     """Seconds from one posture to its neighbour, and how far forward (shares of height)."""
     if new in WAYS and WAYS[new][0] == old:
         return WAYS[new][1], WAYS[new][2]
     return WAYS[old][1], -WAYS[old][2]
-
-
-Fall = tuple[int, float, float, float]
-
-
-def _paced(total: float, period: float, swing_share: float, limp: float) -> list[Fall]:
-    """Footfalls (foot after foot, lift, land, next lift) that fill the time of a way."""
-    active = total - 0.06
-    count = max(2, round(active / period - swing_share) + 1)
-    period = active / (count - 1 + swing_share)
-    swing = swing_share * period
-    falls = []
-    for k in range(count):
-        late = 0.28 * limp * period * (k % 2) * (k < count - 1)
-        lift = 0.03 + k * period + late
-        land = 0.03 + k * period + swing
-        falls.append((k % 2, lift, land, 0.03 + (k + 2) * period))
-    return falls
-
-
-def _skipped(total: float, period: float) -> list[Fall]:
-    """Footfalls of skipping: each foot steps and hops once, then the other."""
-    count = max(2, round((total - 0.1) / period))
-    period = (total - 0.1) / count
-    falls: list[Fall] = []
-    lands = [0.05 + (k + 1) * period for k in range(count)]
-    before: dict[int, float] = {0: 0.0, 1: 0.0}
-    for k, land in enumerate(lands):
-        foot, hop = (k // 2) % 2, k % 2 == 1
-        lift = land - 0.55 * period if hop else max(before[foot], land - 2.2 * period)
-        falls.append((foot, max(lift, 0.02), land, land + (0.45 if not hop else 0.6) * period))
-        before[foot] = land + 0.35 * period
-    last = {f for f, *_ in falls[-2:]}
-    if len(last) == 1:  # the other foot closes up
-        other = 1 - falls[-1][0]
-        falls.append((other, max(before[other], total - 0.4), total - 0.02, total + 0.3))
-    return falls

@@ -7,22 +7,19 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from .acting import Performer, fade, relative_gaze
-from .contacts import SIDE, Contacts, HandTracks, Held, Layer, Wield, holding_weight, reach_layer
+from .acting import Performer
+from .contacts import SIDE, Contacts, HandTracks, Layer, Wield, holding_weight, reach_layer
 from .curves import plateau, ramp, wander
-from .face import GazePull
+from .face import GazePull, fade, relative_gaze
 from .figure import Figure
+from .held import Held
 from .hinges import followed, handle_track, openness
-from .plan import Event, Plan, Window
-from .props import Hold, track_prop
+from .holding import holds_of, spans_of
+from .plan import Plan, Window
+from .props import track_prop
 from .rotations import wrap
-from .types import (
-    Gaze,
-    PropState,
-    Reach,
-    TargetPoint,
-    Task,
-)
+from .timeline import Gaze, Reach
+from .types import PropState, TargetPoint, Task
 from .words import BODY_PLACES
 
 Array = NDArray[np.float64]
@@ -44,7 +41,7 @@ class Scene:
         self.rest = props
         self.seed = seed
         self.performers = {n: Performer(p, t, fps, seeded(seed, n, 2)) for n, p in plans.items()}
-        self.holds = _holds(plans, props)
+        self.holds = holds_of(plans, props)
         self.props: dict[int, Array] = {}
         self.open = {k: openness(p, plans.values(), k, t) for k, p in props.items() if p.hinge is not None}
         self.parts = {k: p.hinge.matrices(self.open[k]) for k, p in props.items() if p.hinge is not None}
@@ -153,7 +150,7 @@ class Scene:
         t, plan = self.t, performer.plan
         carry = np.zeros((2, len(t)))
         for k, side in enumerate("lr"):
-            spans = [s for holds in self.holds.values() for s in _spans(holds, name, side)]
+            spans = [s for holds in self.holds.values() for s in spans_of(holds, name, side)]
             carry[k] = holding_weight(t, spans)
         tilt, dip = np.zeros((2, len(t))), np.zeros((2, len(t)))
         weight = performer.channels.pair("arm", "weight")
@@ -336,46 +333,9 @@ class Scene:
         return out
 
 
-def _holds(plans: dict[str, Plan], props: dict[int, PropState]) -> dict[int, list[Hold]]:
-    """Who holds each thing when, from the starting states and the planned events."""
-    holds: dict[int, list[Hold]] = {}
-    for name, plan in plans.items():
-        for hand, thing in plan.actor.state.held:
-            if thing in props:
-                holds.setdefault(thing, []).append(Hold(name, hand, -1e9, 1e9, None))
-    for event in sorted((e for p in plans.values() for e in p.events), key=lambda e: e.time):
-        nobody = (event.kind == "pass" or event.receiver) and event.receiver not in plans
-        if event.object not in props or props[event.object].hinge is not None or nobody:
-            continue
-        mine = holds.setdefault(event.object, [])
-        if mine and event.kind != "send":
-            last = mine[-1]
-            mine[-1] = Hold(last.person, last.hand, last.start, event.time, event.place, event.flight)
-        if event.kind == "send":
-            mine.append(Hold(event.person, "", event.time, event.time, event.place, event.flight))
-        elif event.kind == "take":
-            mine.append(Hold(event.person, event.hand, event.time, 1e9, None))
-        elif event.receiver is not None:
-            caught = event.time + event.flight
-            mine.append(Hold(event.receiver, _receiving(plans[event.receiver], event), caught, 1e9, None))
-    return holds
-
-
-def _receiving(plan: Plan, event: Event) -> str:
-    window = next((w for w in plan.windows if w.partner == event.person), None)
-    if window is None:
-        return "r"
-    reach = next((r for r in window.timeline.reaches if r.to == "meet"), None)
-    return window.hands[reach.hand if reach is not None else "free"]
-
-
 def _to_body(window: Window, side: str) -> bool:
     """Whether that hand goes to the person's own body in this window, as for drinking."""
     return any(r.to in BODY_PLACES and window.hands[r.hand] == side for r in window.timeline.reaches)
-
-
-def _spans(holds: list[Hold], person: str, hand: str) -> list[tuple[float, float]]:
-    return [(h.start, h.end) for h in holds if h.person == person and h.hand == hand]
 
 
 def seeded(seed: int, name: str, purpose: int) -> np.random.Generator:

@@ -24,7 +24,8 @@ from runtime.formats.rig import plain
 from runtime.formats.textures import sampled
 from runtime.mesh import MATERIALS
 from runtime.motion.perform import perform
-from runtime.motion.types import ActionClip, Actor, ActorState, Task, Timeline, Variant
+from runtime.motion.timeline import Timeline
+from runtime.motion.types import ActionClip, Actor, ActorState, Task, Variant
 from tests.formats.files import CORNERS, FACES, Buffer, box, box_parts, bvh, figure, glb, obj, png
 from tests.motion.checks import measure, violations
 

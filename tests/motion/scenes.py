@@ -10,16 +10,8 @@ from numpy.typing import NDArray
 from runtime.body.proportions import make_skeleton
 from runtime.body.skeleton import JOINT, PARENTS, Skeleton
 from runtime.body.spec import BodySpec
-from runtime.motion.types import (
-    ActionClip,
-    Actor,
-    ActorState,
-    PropState,
-    SceneMotion,
-    TargetPoint,
-    Timeline,
-    Variant,
-)
+from runtime.motion.timeline import Timeline
+from runtime.motion.types import ActionClip, Actor, ActorState, PropState, SceneMotion, TargetPoint, Variant
 
 Array = NDArray[np.float64]
 FPS = 24.0

@@ -14,7 +14,8 @@ from runtime.body.skeleton import JOINT, skinning_matrices
 from runtime.body.spec import BodySpec
 from runtime.motion.feelings import FEELINGS
 from runtime.motion.perform import perform
-from runtime.motion.types import ActionClip, Actor, ActorState, SceneMotion, Talk, Task, Timeline, Variant
+from runtime.motion.timeline import Talk, Timeline
+from runtime.motion.types import ActionClip, Actor, ActorState, SceneMotion, Task, Variant
 
 FACES = {
     "child": BodySpec(height=1.2, age=7.0, femininity=1.0, hair="ponytail"),

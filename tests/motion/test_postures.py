@@ -9,17 +9,8 @@ import pytest
 
 from runtime.body.skeleton import JOINT
 from runtime.motion.perform import perform
-from runtime.motion.types import (
-    ActionClip,
-    Actor,
-    ActorState,
-    FootMove,
-    Jump,
-    SceneMotion,
-    Task,
-    Timeline,
-    Variant,
-)
+from runtime.motion.timeline import FootMove, Jump, Timeline
+from runtime.motion.types import ActionClip, Actor, ActorState, SceneMotion, Task, Variant
 from runtime.world import Stairs
 from vdsl.lang.definitions.action import read_action
 from vdsl.lang.diagnostics import Report

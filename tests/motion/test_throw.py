@@ -8,7 +8,8 @@ import numpy as np
 
 from motion.scenes import FPS, at, person, thing
 from runtime.motion.perform import perform
-from runtime.motion.types import ActionClip, Grasp, SceneMotion, TargetPoint, Task, Timeline, Variant
+from runtime.motion.timeline import Grasp, Timeline
+from runtime.motion.types import ActionClip, SceneMotion, TargetPoint, Task, Variant
 
 THROW = ActionClip(
     "throw",

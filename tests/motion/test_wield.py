@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from runtime.motion.perform import perform
-from runtime.motion.types import ActionClip, PropState, Reach, Task, Timeline, Track, Variant
+from runtime.motion.timeline import Reach, Timeline, Track
+from runtime.motion.types import ActionClip, PropState, Task, Variant
 
 from .scenes import FPS, at, person
 

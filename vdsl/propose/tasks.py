@@ -10,7 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from runtime.body.skeleton import Skeleton
-from runtime.motion.types import ActionClip, Passage, Talk, TargetPoint, Task, Timeline
+from runtime.motion.timeline import Talk, Timeline
+from runtime.motion.types import ActionClip, Passage, TargetPoint, Task
 from runtime.nav import Discs, nearest_free
 
 from ..lang.diagnostics import Report

@@ -9,12 +9,10 @@ from __future__ import annotations
 from collections import defaultdict
 from dataclasses import replace
 
-from runtime.motion.types import (
-    ActionClip,
+from runtime.motion.timeline import (
     Beat,
     Drive,
     FootMove,
-    GaitStyle,
     Gaze,
     Grasp,
     Jump,
@@ -23,8 +21,8 @@ from runtime.motion.types import (
     Tilt,
     Timeline,
     Track,
-    Variant,
 )
+from runtime.motion.types import ActionClip, GaitStyle, Variant
 from vdsl.lang.definitions.action import ActionDef, GaitDef
 from vdsl.lang.definitions.files import FileActionDef
 from vdsl.lang.definitions.timeline import POSED, Key, Move, Part

@@ -223,6 +223,7 @@ def test_a_build_says_what_was_traded_and_what_is_left(folder: Path) -> None:
             assert after["takes"][1]["proposal"] == before["takes"][0]["proposal"]
         else:
             assert first["proposal"] == before["takes"][0]["proposal"]
+        assert all("picture_visibility" in take["measures"] for take in after["takes"]), "all were looked at"
     notes = json.loads((folder / "edited" / "report.json").read_text())["notes"]
     assert notes == [t["text"] for t in cut["trades"]]
 

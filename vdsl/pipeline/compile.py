@@ -173,13 +173,11 @@ def _film_all(
     reel, film, start = Reel(), list[BuiltShot](), 0
     joined: StoryLine | None = None  # the first shot of a line that has a take joins it to the last line
     for act, shot, grid in _proposed(acts, clock):
-        if plan is None:
-            scores = _scores(grid, act, shot, judge, camerawork, clock)
-            vetted = _vetted(grid, scores, shot.takes, act, shot, camerawork, clock)
-            chosen = choose_takes(grid.cameras, vetted.order, shot.takes)
-            grid = vetted.counted(grid, chosen)
-        else:
-            scores, chosen = plan.scores[shot.id], plan.takes[shot.id]
+        scores = plan.scores[shot.id] if plan else _scores(grid, act, shot, judge, camerawork, clock)
+        count = CANDIDATES if plan else shot.takes
+        vetted = _vetted(grid, scores, count, act, shot, camerawork, clock)
+        chosen = plan.takes[shot.id] if plan else choose_takes(grid.cameras, vetted.order, shot.takes)
+        grid = vetted.counted(grid, chosen)
         reel.add(act.line, shot, grid, scores, chosen[:1], act.filming)
         run = (storyboard, options, folder, start)
         takes = tuple(

@@ -103,7 +103,7 @@ def _cops(f: Figure) -> list[Piece]:
     ]
 
 
-def rings(f: Figure, along: Values, places: tuple[float, ...], high: float, width: float) -> Values:
+def rings(along: Values, places: tuple[float, ...], high: float, width: float) -> Values:
     """Thickness of raised rings at ``places`` of a coordinate, metres."""
     total = np.zeros(len(along))
     for at in places:
@@ -153,6 +153,6 @@ def _puffed(f: Figure, places: tuple[float, ...]) -> Field:
 
     def field(p: Points) -> Values:
         u = ((p - origin) @ ARM_FRAME.T)[:, 0]
-        return thick(p) - rings(f, u, places, 0.0055 * f.p.height, 0.014 * f.p.height)
+        return thick(p) - rings(u, places, 0.0055 * f.p.height, 0.014 * f.p.height)
 
     return field

@@ -7,8 +7,6 @@ to be made.
 from __future__ import annotations
 
 import hashlib
-import os
-import tempfile
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -16,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 from platformdirs import user_cache_path
 
+from ..keeping import keep
 from ..mesh import Mesh
 from .proportions import make_skeleton
 from .skeleton import PALETTE, Skeleton
@@ -52,7 +51,8 @@ def build_body(spec: BodySpec, cache: Path | None = None) -> Body:
     if found is not None:
         return found
     body = make_body(spec)
-    _store(path, body)
+    arrays = {key: getattr(body.mesh, key) for key in _ARRAYS}
+    keep(path, {**arrays, "joints": body.joints, "weights": body.weights})
     return body
 
 
@@ -85,19 +85,3 @@ def _load(path: Path, spec: BodySpec) -> Body | None:
     ):
         return None
     return Body(spec, make_skeleton(spec), mesh, joints, weights.astype(np.float32))
-
-
-def _store(path: Path, body: Body) -> None:
-    """Writes a cache file in one step; a full or read-only disk is passed over."""
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        handle, name = tempfile.mkstemp(dir=path.parent, suffix=".part")
-    except OSError:
-        return
-    try:
-        with os.fdopen(handle, "wb") as file:
-            arrays = {key: getattr(body.mesh, key) for key in _ARRAYS}
-            np.savez(file, joints=body.joints, weights=body.weights, **arrays)
-        os.replace(name, path)
-    except OSError:
-        Path(name).unlink(missing_ok=True)

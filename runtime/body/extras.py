@@ -150,7 +150,7 @@ def _apron(f: Figure, solid: Field, upper: list[Piece]) -> list[Piece]:
     ]
 
 
-def _overlaid(f: Figure, upper: list[Piece], outline: Field, lift: float, colour: Colour) -> list[Piece]:
+def _overlaid(upper: list[Piece], outline: Field, lift: float, colour: Colour) -> list[Piece]:
     """A sleeveless layer over the top: its own surface within an outline, a little further out."""
     pieces = []
     upper_solid = upper[0].solid
@@ -198,7 +198,7 @@ def _vest(f: Figure, solid: Field, upper: list[Piece]) -> list[Piece]:
     """High visibility: an open neck and two pale bands."""
     h = f.p.height
     outline, colour = _sleeveless(f, f.level(-0.03), 0.16 * h, 1.0), f.spec.accent_color
-    pieces = _overlaid(f, upper, outline, 0.009 * h, colour)
+    pieces = _overlaid(upper, outline, 0.009 * h, colour)
     bands = []
     for at in (0.18, 0.46):
         band = _round_waist(f, solid, f.level(at), 0.013, 0.013)
@@ -208,7 +208,7 @@ def _vest(f: Figure, solid: Field, upper: list[Piece]) -> list[Piece]:
 
 def _waistcoat(f: Figure, solid: Field, upper: list[Piece]) -> list[Piece]:
     outline = _sleeveless(f, f.level(0.02), 0.24 * f.p.height, 0.9)
-    pieces = _overlaid(f, upper, outline, 0.006 * f.p.height, f.spec.accent_color)
+    pieces = _overlaid(upper, outline, 0.006 * f.p.height, f.spec.accent_color)
     levels = np.array([f.level(x) for x in (0.08, 0.20, 0.32)])
     points = on_chest(solid, np.array([0.0]), levels, 0.009 * f.p.height)[:, 0]
     dots = merged([ellipsoid_patch(p, (0.003, 0.005 * f.p.height, 0.005 * f.p.height), 6, 3) for p in points])

@@ -27,7 +27,7 @@ def hair_cover(head: Head) -> Field | None:
     style = head.figure.spec.hair
     if style in ("bald", "tonsure"):
         return None
-    line = hairline(head, 0.83, 0.75, 0.26, 0.52)
+    line = hairline(0.83, 0.75, 0.26, 0.52)
     shell = scalp(head)
     return head.field(lambda p: np.maximum(shell(p) - 0.014, line(p) + 0.03))
 
@@ -35,17 +35,17 @@ def hair_cover(head: Head) -> Field | None:
 def _short(head: Head) -> list[Piece]:
     quiff = round_cone((0.20, 0.06, 0.93), (0.30, -0.13, 0.90), 0.085, 0.10)
     shape = grooves(union([(mirrored_half(cap(head, 0.030, 0.05)), 0.0), (quiff, 0.10)]), 0.005, 11)
-    cut = mirrored_half(hairline(head, 0.80, 0.70, 0.20))
+    cut = mirrored_half(hairline(0.80, 0.70, 0.20))
     return [hair_piece(head, shape, (-0.62, -0.5, -0.05), (0.62, 0.5, 1.2), cut, 900, symmetric=False)]
 
 
 def _crop(head: Head) -> list[Piece]:
-    cut = hairline(head, 0.80, 0.71, 0.22, 0.44)
+    cut = hairline(0.80, 0.71, 0.22, 0.44)
     return [hair_piece(head, cap(head, 0.016), (-0.6, -0.5, 0.0), (0.6, 0.5, 1.15), cut, 420)]
 
 
 def _bob(head: Head) -> list[Piece]:
-    shape = carve(mirrored_half(curtain(head, 0.07, 0.030)), face_window(head, 0.745, 0.262, 0.30), 0.03)
+    shape = carve(mirrored_half(curtain(head, 0.07, 0.030)), face_window(0.745, 0.262, 0.30), 0.03)
     return [
         hair_piece(
             head,
@@ -60,7 +60,7 @@ def _bob(head: Head) -> list[Piece]:
 
 
 def _long(head: Head) -> list[Piece]:
-    shape = carve(curtain(head, 0.0, 0.02), face_window(head, 0.78, 0.255), 0.03)
+    shape = carve(curtain(head, 0.0, 0.02), face_window(0.78, 0.255), 0.03)
     fall = round_cone((-0.24, 0.10, 0.35), (-0.30, 0.10, -0.42), 0.24, 0.17)
     both = union([(shape, 0.0), (mirrored_half(fall), 0.12)])
     return [
@@ -73,7 +73,7 @@ def _long(head: Head) -> list[Piece]:
 def _tied(head: Head) -> Piece:
     """Hair combed back from a parting at the side."""
     young = head.figure.spec.youth > 0.3
-    cut = hairline(head, 0.755 if young else 0.80, 0.66, 0.20, 0.44, sweep=0.36 if young else 0.16)
+    cut = hairline(0.755 if young else 0.80, 0.66, 0.20, 0.44, sweep=0.36 if young else 0.16)
     wave = round_cone((0.30, -0.20, 0.80), (0.30, 0.16, 0.90), 0.085, 0.075)
     shape = grooves(union([(mirrored_half(cap(head, 0.040, 0.06)), 0.0), (wave, 0.10)]), 0.005, 12)
 
@@ -111,16 +111,16 @@ def _bun(head: Head) -> list[Piece]:
 
 def _curly(head: Head) -> list[Piece]:
     shape = mirrored_half(cap(head, 0.085, 0.07))
-    return curls(head, shape, mirrored_half(hairline(head, 0.79, 0.68, 0.10, 0.38)), 0.036, 19.0, 1300)
+    return curls(head, shape, mirrored_half(hairline(0.79, 0.68, 0.10, 0.38)), 0.036, 19.0, 1300)
 
 
 def _afro(head: Head) -> list[Piece]:
     puff = ellipsoid((-0.07, 0.0, 0.74), (0.53, 0.52, 0.50))
-    return curls(head, puff, mirrored_half(hairline(head, 0.80, 0.66, 0.25, 0.42)), 0.016, 34.0, 1200)
+    return curls(head, puff, mirrored_half(hairline(0.80, 0.66, 0.25, 0.42)), 0.016, 34.0, 1200)
 
 
 def _tonsure(head: Head) -> list[Piece]:
-    line = hairline(head, 0.80, 0.70, 0.20)
+    line = hairline(0.80, 0.70, 0.20)
 
     def cut(p: Points) -> Values:
         ring = p[:, 2] - 0.70 + 0.25 * np.clip(p[:, 0], -0.3, 0.3)

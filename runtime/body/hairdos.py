@@ -18,7 +18,7 @@ def pixie(head: Head) -> list[Piece]:
     """Short all over, a long fringe swept to the side."""
     fringe = round_cone((0.30, -0.16, 0.78), (0.32, 0.14, 0.86), 0.07, 0.075)
     crown = union([(mirrored_half(cap(head, 0.038, 0.05)), 0.0), (fringe, 0.10)])
-    cut = hairline(head, 0.745, 0.58, 0.24, 0.40, sweep=0.34)
+    cut = hairline(0.745, 0.58, 0.24, 0.40, sweep=0.34)
 
     def sided(p: Points) -> Values:
         q = p.copy()
@@ -34,7 +34,7 @@ def pixie(head: Head) -> list[Piece]:
 
 def wavy(head: Head) -> list[Piece]:
     """To the shoulders in waves."""
-    base = carve(curtain(head, -0.10, 0.05, 0.03), face_window(head, 0.77, 0.258), 0.03)
+    base = carve(curtain(head, -0.10, 0.05, 0.03), face_window(0.77, 0.258), 0.03)
 
     def waves(p: Points) -> Values:
         low = np.clip((0.75 - p[:, 2]) / 0.4, 0.0, 1.0)
@@ -51,7 +51,7 @@ def wavy(head: Head) -> list[Piece]:
 
 def combed_back(head: Head, thick: float = 0.030) -> Piece:
     """Hair drawn tightly to the back."""
-    cut = hairline(head, 0.80, 0.69, 0.20, 0.44)
+    cut = hairline(0.80, 0.69, 0.20, 0.44)
     return hair_piece(
         head, grooves(cap(head, thick, 0.02), 0.006, 14), (-0.62, -0.5, 0.0), (0.6, 0.5, 1.15), cut, 560
     )
@@ -106,7 +106,7 @@ def locs(head: Head) -> list[Piece]:
 
 def mohawk(head: Head) -> list[Piece]:
     """A fin over a shaved head."""
-    shadow = hairline(head, 0.82, 0.73, 0.24, 0.46)
+    shadow = hairline(0.82, 0.73, 0.24, 0.46)
     shaved = hair_piece(
         head, cap(head, 0.004), (-0.6, -0.5, 0.0), (0.6, 0.5, 1.15), shadow, 300, rim=0.004
     ).looking(shade(head.figure.spec.skin, 0.80), "skin")

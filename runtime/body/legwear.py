@@ -49,7 +49,7 @@ def bottom(f: Figure) -> list[Piece]:
     if f.spec.bottom in ("skirt", "long-skirt", "pencil-skirt"):
         return _skirt(f)
     pieces = _trousers(f)
-    return [*pieces, *_bib(f, pieces[0])] if f.spec.bottom == "overalls" else pieces
+    return [*pieces, *_bib(f)] if f.spec.bottom == "overalls" else pieces
 
 
 def _trousers(f: Figure) -> list[Piece]:
@@ -62,7 +62,7 @@ def _trousers(f: Figure) -> list[Piece]:
     low_ring, high_ring = 0.55 * f.p.knee, 0.5 * (f.p.knee + f.p.hip[1])
 
     def solid(p: Points) -> Values:
-        folds = rings(f, p[:, 2], (low_ring, f.p.knee, high_ring), 0.006 * h, 0.014 * h) if suit else 0.0
+        folds = rings(p[:, 2], (low_ring, f.p.knee, high_ring), 0.006 * h, 0.014 * h) if suit else 0.0
         return np.asarray(smooth_min(body(p), leg(p), 0.03 * h) - folds)
 
     shorts = f.spec.bottom == "shorts" and not suit
@@ -89,7 +89,7 @@ def _trousers(f: Figure) -> list[Piece]:
     return [hemmed(piece, 0.010 * h)]
 
 
-def _bib(f: Figure, trousers: Piece) -> list[Piece]:
+def _bib(f: Figure) -> list[Piece]:
     """The bib of overalls and its straps, over whatever the top is."""
     h, colour = f.p.height, f.spec.bottom_color
     body = trunk(f, 0.0175 * h, 0.20)

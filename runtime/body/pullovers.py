@@ -148,7 +148,7 @@ def hoodie(f: Figure) -> list[Piece]:
             ),
         ]
     )
-    pieces.append(blob(f, roll, nape, 0.11 * h, shade(f.spec.top_color, 0.9), 300))
+    pieces.append(blob(roll, nape, 0.11 * h, shade(f.spec.top_color, 0.9), 300))
     width = np.linspace(0.0, 1.0, 5) * 0.066 * h
     up = np.linspace(f.level(0.06), f.level(0.27), 4)
     across = width[None] * np.linspace(1.0, 0.66, 4)[:, None]
@@ -192,7 +192,7 @@ def tunic(f: Figure) -> list[Piece]:
     return [hemmed(q, 0.010 * h) for q in pieces]
 
 
-def blob(f: Figure, shape: Field, middle: Points, size: float, colour: Colour, faces: int) -> Piece:
+def blob(shape: Field, middle: Points, size: float, colour: Colour, faces: int) -> Piece:
     """A soft thing that goes with the clothes: the left half of a solid around a point."""
     low = np.array([middle[0] - size, -0.03, middle[2] - size])
     patch = half(simplify(polygonise(shape, low, middle + size, 0.006), faces, shape))

@@ -36,9 +36,7 @@ def cap(head: Head, thick: float, top: float = 0.0) -> Field:
     return lambda p: smooth_min(base(p) - thick, crown(p), 0.05)
 
 
-def hairline(
-    head: Head, forehead: float, temple: float, nape: float, burn: float = 0.42, sweep: float = 0.0
-) -> Field:
+def hairline(forehead: float, temple: float, nape: float, burn: float = 0.42, sweep: float = 0.0) -> Field:
     """Negative where hair grows: above a line over forehead, temple, around the ear and down to the nape.
 
     sweep: slant of the line over the forehead, for hair brushed to the side
@@ -120,7 +118,7 @@ def curtain(head: Head, bottom: float, flare: float, back: float = 0.0) -> Field
     return lambda p: -smooth_min(-whole(p), -under(p), 0.07)
 
 
-def face_window(head: Head, top: float, width: float, sweep: float = 0.0) -> Field:
+def face_window(top: float, width: float, sweep: float = 0.0) -> Field:
     """The opening of long hair around the face, a rounded arch through the front; ``sweep`` slants it."""
 
     def field(p: Points) -> Values:

@@ -10,10 +10,8 @@ Sets and props out of other programs' files are always built.
 from __future__ import annotations
 
 import hashlib
-import io
 import json
 import os
-import tempfile
 from collections.abc import Iterator
 from dataclasses import asdict
 from functools import lru_cache
@@ -26,6 +24,7 @@ from platformdirs import user_cache_path
 
 import runtime
 import vdsl
+from runtime.keeping import keep
 from runtime.mesh import Mesh
 from runtime.world import Hinge, Level, Light, Solids, Spot, Stairs, Wall, World, WorldObject
 
@@ -68,7 +67,7 @@ def load_world(
     found = _read(path)
     if found is None:
         found = build_world(definition, catalog, time, room)
-        _write(path, found)
+        keep(path, packed(found), MOST)
     return found
 
 
@@ -128,29 +127,6 @@ def sound(world: World) -> bool:
         and len({len(getattr(world.solids, a)) for a in _SOLIDS}) == 1
         and (count > 0 or faces == 0)
     )
-
-
-def _write(path: Path, world: World) -> None:
-    """Writes a file in one step, and drops the longest unused where there are too many."""
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        handle, name = tempfile.mkstemp(dir=path.parent, suffix=".part")
-    except OSError:
-        return
-    try:
-        held = io.BytesIO()
-        np.savez(held, **packed(world))  # type: ignore[arg-type]
-        with os.fdopen(handle, "wb") as file:
-            file.write(held.getbuffer())
-        os.replace(name, path)
-        kept = sorted(path.parent.glob("*.npz"), key=lambda p: p.stat().st_mtime)
-        for old in kept[: max(len(kept) - MOST, 0)]:
-            old.unlink(missing_ok=True)
-    except OSError:
-        Path(name).unlink(missing_ok=True)
-
-
-# --- worlds as arrays -----------------------------------------------------------------------
 
 
 def packed(world: World) -> Arrays:

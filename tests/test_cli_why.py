@@ -122,6 +122,19 @@ def test_takes_and_builds_that_are_not_there_are_told(folder: Path, tmp_path: Pa
     assert vdsc("why", tmp_path / "none.vds", "1").exit_code == 2
 
 
+def test_the_space_of_a_shot_is_shown(folder: Path) -> None:
+    shown = vdsc("why", folder / "story.vds", "1", "--space").stdout
+    assert "static full eye-level: " in shown
+    assert "push full eye-level: " in shown
+    assert "μ ∈ [0.5, 0.8]" in shown
+    assert "φ ∈ {0, 45, 90, 135, 180, 225, 270, 315} °" in shown
+    told = json.loads(vdsc("why", folder / "story.vds", "2", "--space", "--json").stdout)
+    assert told["proposals"] == 10
+    (space,) = told["spaces"]
+    assert space["style"] == "follow medium eye-level"
+    assert {v["symbol"] for v in space["free"]} == {"φ", "Δφ", "f", "lead", "λ"}
+
+
 def test_documented_fields_are_the_fields(folder: Path) -> None:
     def fields(value: object, prefix: str = "") -> set[str]:
         out: set[str] = set()
@@ -135,4 +148,6 @@ def test_documented_fields_are_the_fields(folder: Path) -> None:
 
     section = DOCS.read_text("utf-8").split("## `vds.why/1`", 1)[1].split("\n## ", 1)[0]
     documented = set(re.findall(r"^\| `([^`]+)` \|", section, re.MULTILINE))
-    assert documented - {"advice.why", "advice.instead"} == fields(explained(folder / "story.vds", "1", "-b", folder / "out"))
+    assert documented - {"advice.why", "advice.instead"} == fields(
+        explained(folder / "story.vds", "1", "-b", folder / "out")
+    )

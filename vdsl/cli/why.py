@@ -33,6 +33,9 @@ def why(
     fresh: Annotated[
         bool, typer.Option("--fresh", help="Propose the shot again in memory, ordered by geometry.")
     ] = False,
+    space: Annotated[
+        bool, typer.Option("--space", help="Show instead what cameras of the shot are drawn from.")
+    ] = False,
     as_json: Annotated[bool, typer.Option("--json", help="As a document of schema vds.why/1.")] = False,
 ) -> None:
     """Explain why a take ranks where it does, in words and numbers.
@@ -42,6 +45,9 @@ def why(
     """
     checked = check_or_exit(file, "text", quiet_warnings=True)
     wanted = _shot(checked, shot)
+    if space:
+        _show_space(checked, wanted, as_json)
+        return
     facts = _facts(checked, wanted, file, build, fresh)
     if take is not None and take > len(facts.takes):
         has = count(len(facts.takes), "take") if facts.takes else "no take"
@@ -101,6 +107,38 @@ def _facts(checked: Checked, wanted: str, file: Path, build: Path | None, fresh:
         from ..pipeline.audition import facts_in_memory
 
         return facts_in_memory(checked, wanted)
+
+
+def _show_space(checked: Checked, wanted: str, as_json: bool) -> None:
+    """What is fixed and what is free, for every style the shot may have."""
+    from ..cinema.subspaces import subspace
+
+    board = checked.storyboard
+    shot = next(s for line in board.lines for s in line.shots if s.id == wanted)
+    styles = [(m, s, a) for m in shot.movements for s in shot.scales for a in shot.angles]
+    spaces = [(" ".join(x), subspace(*x, shot.lens, shot.ease, board.rig)) for x in styles]
+    if as_json:
+        entries = [
+            {
+                "style": words,
+                "fixed": dict(found.fixed),
+                "free": [
+                    {"symbol": v.symbol, "name": v.name, "unit": v.unit, "grid": list(v.grid)}
+                    | ({} if v.grid else {"low": v.low, "high": v.high})
+                    for v in found.free
+                ],
+            }
+            for words, found in spaces
+        ]
+        document = {"schema": "vds.space/1", "shot": wanted, "proposals": shot.proposals, "spaces": entries}
+        write_line(json.dumps(document, indent=1, ensure_ascii=False), sys.stdout)
+        return
+    for words, found in spaces:
+        write_line(f"{words}: {shot.proposals if len(spaces) == 1 else 'some'} proposals of", sys.stdout)
+        for symbol, held in found.fixed:
+            write_line(f"  {symbol:<8} fixed: {held}", sys.stdout)
+        for variable in found.free:
+            write_line(f"  {variable.symbol:<8} {variable}, {variable.name}", sys.stdout)
 
 
 # --- as text ----------------------------------------------------------------------------------

@@ -15,7 +15,6 @@ from numpy.typing import NDArray
 
 from runtime.mesh import Mesh
 
-from ..cinema.moves import family
 from ..cinema.subject import Subject
 from ..cinema.track import camera_axes, project
 from ..lang.ir import Shot
@@ -161,10 +160,11 @@ def _share(camera: CameraProposal, surface: _Surface | None, ids: NDArray[np.int
 
 
 def _meant(camera: CameraProposal) -> range:
-    """The segments in which a take is on its subject: the first or the last two of a tilt or a pan."""
-    if family(camera.movement) not in ("tilt", "pan"):
+    """The segments in which a take is on its subject: the first or last two where it turns off or onto it."""
+    ending = "on" if "whip-pan" in camera.movement else camera.params.get("ending")
+    if ending is None:
         return range(SEGMENTS)
-    return range(SEGMENTS - 2, SEGMENTS) if camera.params.get("ending") == "on" else range(2)
+    return range(SEGMENTS - 2, SEGMENTS) if ending == "on" else range(2)
 
 
 def _grown(mask: NDArray[np.bool_]) -> NDArray[np.bool_]:

@@ -193,7 +193,7 @@ def test_wildcards_choices_and_what_is_left_out() -> None:
 
 
 def test_every_camera_word_stands_for_words_there_are() -> None:
-    known = {"movement": ir.MOVEMENTS, "scale": ir.SIZES, "angle": ir.ALL_ANGLES}
+    known = {"movement": (*ir.MOVEMENTS, *ir.FURTHER_MOVEMENTS), "scale": ir.SIZES, "angle": ir.ALL_ANGLES}
     known |= {"view": ir.VIEWS, "lean": ("dutch",)}
     for word, meaning in CAMERA_WORDS.items():
         assert set(meaning.words) <= set(known[meaning.slot]), word

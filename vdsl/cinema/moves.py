@@ -63,6 +63,12 @@ SIGN = {
     "pedestal-down": -1.0,
     "arc-left": -1.0,
     "arc-right": 1.0,
+    "crane-up": 1.0,
+    "crane-down": -1.0,
+    "roll-left": -1.0,
+    "roll-right": 1.0,
+    "whip-pan-left": 1.0,
+    "whip-pan-right": -1.0,
 }
 
 
@@ -199,9 +205,19 @@ MOVES: dict[str, Callable[[Array, Draw, float], Path3]] = {
 }
 
 
+_TWO_WORDS = ("dolly-zoom", "whip-pan")
+
+
 def family(movement: str) -> str:
-    """``pan`` for ``pan-left``: the key of :data:`MOVES`."""
-    return movement.split("-")[0]
+    """``pan`` for ``pan-left``, ``dolly-zoom`` for ``dolly-zoom-in``; ``push+pan`` for ``push+pan-left``."""
+    if "+" in movement:
+        return "+".join(family(part) for part in movement.split("+"))
+    return next((name for name in _TWO_WORDS if movement.startswith(name)), movement.split("-")[0])
+
+
+def families(movement: str) -> frozenset[str]:
+    """The families of all that goes on at once."""
+    return frozenset(family(part) for part in movement.split("+"))
 
 
 def track_of(

@@ -28,6 +28,16 @@ DEEPEST_VALUE = 120
 Node = Any  # Tree | Token: lark's trees are untyped inside
 
 
+def _at_once(before: ast.Name | ast.Star | ast.Choice, word: ast.Name | ast.Star) -> ast.Name | ast.Choice:
+    """Two words joined by ``+`` as one; of a choice, the last one is joined."""
+    if isinstance(before, ast.Choice):
+        last = before.items[-1]
+        joined = _at_once(last, word) if isinstance(last, (ast.Name, ast.Star)) else last
+        return ast.Choice((*before.items[:-1], joined), before.span.to(word.span))
+    span = before.span.to(word.span)
+    return ast.Name((span.text,), span)
+
+
 class TooDeepError(Exception):
     """A value nested beyond reason; turned into a diagnostic by the parser."""
 
@@ -261,7 +271,13 @@ class Builder:
                     )
                 joined = True
                 continue
+            if token.type == "PLUS":
+                self._lone_plus(tokens, i)
+                continue
             word = ast.Star(self.span(token)) if token.type == "STAR" else self.name(token)
+            if i and tokens[i - 1].type == "PLUS" and words:
+                words.append(_at_once(words.pop(), word))
+                continue
             if joined and words:
                 last = words.pop()
                 items = last.items if isinstance(last, ast.Choice) else (last,)
@@ -270,6 +286,16 @@ class Builder:
                 words.append(word)
             joined = False
         return tuple(words)
+
+    def _lone_plus(self, tokens: Sequence[Token], i: int) -> None:
+        """Report a ``+`` that does not stand between two words."""
+        if not 0 < i < len(tokens) - 1 or {tokens[i - 1].type, tokens[i + 1].type} & {"BAR", "PLUS", "STAR"}:
+            self.report.error(
+                "VDS010",
+                self.span(tokens[i]),
+                label="`+` stands between two movements",
+                help="as in push+pan-left",
+            )
 
     def _options(self, node: Tree[Token]) -> tuple[ast.Option, ...]:
         return tuple(self._option(_tree(child)) for child in node.children)

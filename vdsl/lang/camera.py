@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import TypeAlias
 
 from . import ast, ir, words
-from .diagnostics import Report, listing, nearest
+from .diagnostics import Report, nearest
 from .source import Span
 
 SLOTS = ("movement", "scale", "angle")
@@ -73,7 +73,7 @@ def read_camera(node: ast.CameraNode | None, rig: str, report: Report) -> Camera
 
 
 def _is_view(term: _Term) -> bool:
-    meaning = None if isinstance(term, ast.Star) else words.CAMERA_WORDS.get(term[0][0])
+    meaning = None if isinstance(term, ast.Star) else words.meaning(term[0][0])
     return meaning is not None and meaning.slot == "view"
 
 
@@ -88,7 +88,7 @@ def _owner(terms: list[_Term]) -> ast.Name | None:
         word, span = term[0]
         if skipped == 0 and word in ("of", "from", "at"):
             continue
-        if word in words.CAMERA_WORDS or word in words.NOT_YET:
+        if words.meaning(word) is not None:
             return None
         del terms[: skipped + 1]
         return ast.Name(tuple(span.text.split(".")), span)
@@ -137,7 +137,7 @@ def _longest(flat: list[tuple[str, Span, bool] | ast.Star], start: int) -> int:
         if any(part[2] for part in run[1:] if not isinstance(part, ast.Star)):
             continue
         word = "-".join(part[0] for part in run if not isinstance(part, ast.Star))
-        if word in words.CAMERA_WORDS or word in words.NOT_YET:
+        if words.meaning(word) is not None:
             return size
     return 1
 
@@ -149,7 +149,7 @@ def _take(
     slot: str | None = None
     meant: list[str] = []
     for word, span in term:
-        meaning = words.CAMERA_WORDS.get(word)
+        meaning = words.meaning(word)
         if meaning is None:
             slot = _unknown(word, span, found, report) or slot
             continue
@@ -165,6 +165,11 @@ def _take(
             continue
         if rig == "paper":
             _on_paper(meaning, span, report)
+            if meaning.slot == "view":
+                continue
+        if meaning.slot == "movement" and not _go_together(meaning.words[0], span, report):
+            slot = slot or "movement"
+            continue
         slot = meaning.slot
         meant.extend(w for w in meaning.words if w not in meant)
     if slot is None:
@@ -183,24 +188,11 @@ def _take(
 
 def _unknown(word: str, span: Span, found: dict[str, tuple[str, ...]], report: Report) -> str | None:
     """Report a word the camera does not understand; its slot where that is plain."""
-    if word in words.NOT_YET:
-        slot, near = words.NOT_YET[word]
-        known = {
-            "movement": tuple(words.ANY["movement"]),
-            "scale": ir.SIZES,
-            "angle": ir.ALL_ANGLES,
-        }
-        report.error(
-            "VDS041",
-            span,
-            label=f"`{span.text}` is {_a(slot)} of film grammar that cannot be shot yet",
-            help=words.hint(word) or f"{slot}s now are {listing(known[slot], 20, last='and')}",
-            suggestion=near,
-            fix=near,
-        )
-        found.setdefault(slot, ())
+    if "+" in word:
+        _no_pair(word, span, report)
+        found.setdefault("movement", ())
         return None
-    meant = nearest(word, [*words.CAMERA_WORDS, *words.NOT_YET])
+    meant = nearest(word, words.CAMERA_WORDS)
     if meant in words.CAMERA_WORDS:
         meaning = words.CAMERA_WORDS[meant]
         canonical = meaning.words[0] if len(meaning.words) == 1 else meant
@@ -226,9 +218,11 @@ def _unknown(word: str, span: Span, found: dict[str, tuple[str, ...]], report: R
 
 def _on_paper(meaning: words.Meaning, span: Span, report: Report) -> None:
     """Report a word for which the paper gives no numbers."""
-    if meaning.slot == "lean" or not set(meaning.words) & (words.NEAREST.keys() | set(ir.VIEWS)):
+    known = (*ir.MOVEMENTS, *ir.SCALES, *ir.ANGLES)
+    if meaning.slot == "lean" or set(meaning.words) <= set(known):
         return
-    near = next((words.NEAREST[word] for word in meaning.words if word in words.NEAREST), None)
+    near = next((words.paper_word(word) for word in meaning.words if word not in known), None)
+    near = near if near in known else None
     report.error(
         "VDS046",
         span,
@@ -239,9 +233,48 @@ def _on_paper(meaning: words.Meaning, span: Span, report: Report) -> None:
     )
 
 
+def _go_together(movement: str, span: Span, report: Report) -> bool:
+    """Whether two movements can be done at once; reports it where they cannot."""
+    parts = movement.split("+")
+    alone = next((p for p in parts if p.startswith("whip-pan")), None)
+    same = len(parts) == 2 and _kind(parts[0]) == _kind(parts[1])
+    if len(parts) == 1 or not (alone or same):
+        return True
+    report.error(
+        "VDS049",
+        span,
+        label="a whip pan goes alone" if alone else "these two are of one kind",
+        help="two movements at once are of two kinds, as in push+pan-left",
+    )
+    return False
+
+
+def _kind(movement: str) -> str:
+    """What a movement moves: two that move the same are no pair."""
+    kinds = {"push": "reach", "pull": "reach", "dolly": "reach" if "zoom" in movement else "dolly"}
+    first = movement.split("-")[0]
+    return kinds.get(first, first)
+
+
+def _no_pair(word: str, span: Span, report: Report) -> None:
+    """Report what cannot be done at once, or is no movement."""
+    parts = word.split("+")
+    wrong = next((p for p in parts if (m := words.meaning(p)) is None or m.slot != "movement"), None)
+    movements = [w for w, meaning in words.CAMERA_WORDS.items() if meaning.slot == "movement"]
+    meant = nearest(wrong, movements) if wrong else None
+    report.error(
+        "VDS040",
+        span,
+        label=f"`{wrong}` is no movement" if wrong else "at most two movements go on at once",
+        help="as in push+pan-left",
+        suggestion="+".join(meant if p == wrong else p for p in parts) if meant else None,
+    )
+
+
 def _slot_help(slot: str) -> str:
     if slot == "movement":
         families = "static, follow, push, pull, zoom, tilt, pan, dolly, pedestal, arc"
+        families += ", crane, roll, dolly-zoom, handheld, whip-pan"
         return f"movements: {families} (and -in, -out, -up, -down, -left, -right)"
     if slot == "scale":
         return f"scales: {', '.join(ir.SIZES)}"

@@ -252,18 +252,13 @@ CODES: dict[str, Code] = {
     # -- the camera --------------------------------------------------------------------------
     "VDS040": Code(
         "unknown camera word",
-        "A camera line has a movement (static, follow, push, pull, zoom, tilt, pan, dolly, pedestal, arc), a scale "
+        "A camera line has a movement (static, follow, push, pull, zoom, tilt, pan, dolly, pedestal, arc, "
+        "crane, roll, dolly-zoom, handheld, whip-pan, or two joined as in push+pan), a scale "
         "(extreme-close-up, big-close-up, close-up, medium-close-up, medium, cowboy, medium-long, full, wide, "
         "extreme-wide) and an angle (eye-level, high-angle, low-angle, overhead, worms-eye, shoulder-level, "
         "hip-level, knee-level, ground-level). Each may be `*`, a choice like push|static, or left out.",
         "(anna walk) / (folow full eye-level)",
         "(anna walk) / (follow full eye-level)",
-    ),
-    "VDS041": Code(
-        "a camera word that cannot be shot yet",
-        "Film grammar has more movements than can be shot so far. The suggestion is the nearest one that can.",
-        "(anna walk) / (crane medium eye-level)",
-        "(anna walk) / (pedestal medium eye-level)",
     ),
     "VDS042": Code(
         "two camera words of one kind",
@@ -305,6 +300,13 @@ CODES: dict[str, Code] = {
         "one who acts, through the eyes of the one who acts.",
         "(anna wave) / (static medium ots)",
         "(anna wave) / (static medium ots ben)",
+    ),
+    "VDS049": Code(
+        "movements that do not go together",
+        "Two movements joined by `+` go on at once: a push and a pan, an arc and a crane. Two of one kind would be "
+        "one movement, and a whip pan is over too soon for another.",
+        "(anna walk) / (push+pull medium eye-level)",
+        "(anna walk) / (push+pan-left medium eye-level)",
     ),
     "VDS048": Code(
         "not through somebody's eyes",

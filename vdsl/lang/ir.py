@@ -29,6 +29,9 @@ MOVEMENT_FAMILIES: dict[str, tuple[str, ...]] = {
     "pedestal": ("pedestal-up", "pedestal-down"),
     "arc": ("arc-left", "arc-right"),
 }
+#: Movements that are proposed where they are said; two of any may be joined, as in ``push+pan-left``.
+FURTHER_MOVEMENTS = ("crane-up", "crane-down", "roll-left", "roll-right", "dolly-zoom-in", "dolly-zoom-out",
+                     "handheld", "whip-pan-left", "whip-pan-right")  # fmt: skip
 SCALES = ("close-up", "medium", "full", "wide")
 ANGLES = ("eye-level", "high-angle", "low-angle")
 #: All sizes, from the closest; :data:`SCALES` are those that ``rig paper`` has, and so for the others.

@@ -6,6 +6,7 @@ spaces as ``-``. The longest run of words wins, so ``tilt up`` is one word.
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 
 from . import ir
@@ -44,6 +45,19 @@ _MOVEMENTS: dict[str, str] = {
     "arc-left": "arc-left orbit-left",
     "arc-right": "arc-right orbit-right",
     "arc-left|arc-right": "arc orbit around",
+    "crane-up": "crane-up jib-up crane-rise",
+    "crane-down": "crane-down jib-down",
+    "crane-up|crane-down": "crane jib crane-shot",
+    "roll-left": "roll-left",
+    "roll-right": "roll-right",
+    "roll-left|roll-right": "roll",
+    "dolly-zoom-in": "dolly-zoom-in",
+    "dolly-zoom-out": "dolly-zoom-out",
+    "dolly-zoom-in|dolly-zoom-out": "dolly-zoom dollyzoom zolly vertigo trombone contra-zoom",
+    "handheld": "handheld hand-held hand-held-shot handheld-camera shaky",
+    "whip-pan-left": "whip-pan-left whip-left swish-pan-left",
+    "whip-pan-right": "whip-pan-right whip-right swish-pan-right",
+    "whip-pan-left|whip-pan-right": "whip-pan whip swish-pan swish",
 }
 _SCALES: dict[str, str] = {
     "extreme-close-up": "extreme-close-up ecu xcu extreme-closeup extreme-close extreme-close-shot detail",
@@ -92,16 +106,16 @@ NEAREST: dict[str, str] = {
     "hip-level": "eye-level",
     "knee-level": "low-angle",
     "ground-level": "low-angle",
+    "crane-up": "pedestal-up",
+    "crane-down": "pedestal-down",
+    "roll-left": "static",
+    "roll-right": "static",
+    "dolly-zoom-in": "push",
+    "dolly-zoom-out": "pull",
+    "handheld": "follow",
+    "whip-pan-left": "pan-left",
+    "whip-pan-right": "pan-right",
 }
-#: Words of film grammar that are not built yet, and the nearest that is.
-NOT_YET: dict[str, tuple[str, str]] = {
-    "crane": ("movement", "pedestal"), "roll": ("movement", "static"), "dolly-zoom": ("movement", "push"),
-    "handheld": ("movement", "follow"), "whip-pan": ("movement", "pan"), "rack-focus": ("movement", "static"),
-}  # fmt: skip
-_HINTS = {
-    "roll": "tilt the picture with the option `roll 12deg`",
-}
-
 #: Medium close shot, often mistaken for cowboy; taken as what it means.
 MEDIUM_CLOSE_SHOT = ("mcs", "medium-close-up")
 
@@ -143,15 +157,22 @@ ARTICLES = ("the", "a", "an")
 
 def fold(word: str) -> str:
     """A word as the tables have it."""
-    folded = word.casefold().replace("_", "-").replace(" ", "-")
+    folded = re.sub(r"\s*\+\s*", "+", word.casefold()).replace("_", "-").replace(" ", "-")
     return folded.replace("'", "").replace("’", "")
 
 
 def paper_word(word: str) -> str:
-    """The word of the paper that is nearest to a canonical one."""
-    return NEAREST.get(word, word)
+    """The word of the paper that is nearest to a canonical one; of two movements at once the first one's."""
+    first = word.split("+")[0]
+    return NEAREST.get(first, first)
 
 
-def hint(word: str) -> str | None:
-    """A further word of help for one that is not built yet."""
-    return _HINTS.get(word)
+def meaning(word: str) -> Meaning | None:
+    """What a folded word means, or two movements joined by ``+``; None for what is no word of the camera."""
+    if "+" not in word:
+        return CAMERA_WORDS.get(word)
+    parts = [CAMERA_WORDS.get(part) for part in word.split("+")]
+    if len(parts) != 2 or any(part is None or part.slot != "movement" for part in parts):
+        return None
+    first, second = (part.words for part in parts if part is not None)
+    return Meaning("movement", tuple(f"{a}+{b}" for a in first for b in second))

@@ -9,9 +9,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from ..cinema.subspaces import AZIMUTHS, BEFORE
 from ..lang.ir import Shot
-
-AZIMUTHS = 8
 
 
 def generator(seed: int, shot: str, purpose: str) -> np.random.Generator:
@@ -26,6 +25,7 @@ class Sample:
 
     story, movement, scale, angle: int [N] indices into what the shot allows; azimuth: int [N], 0..7
     lam: λ [N]; key: 0 start or 1 end; on: bool; before: 0, 0.5 or 1
+    lam_too: λ [N] of the second of two movements at once; noise: [N], seeds of hand-held shakes
     reach: [N], the distance as a share of the solved one; 1 but where cameras are nudged
     the rest [N] in 0..1, to be spread over their ranges: lens, mu, turn, travel, lead, jitter (beyond that
         range where cameras are nudged)
@@ -47,6 +47,8 @@ class Sample:
     lead: NDArray[np.float64]
     jitter: NDArray[np.float64]
     reach: NDArray[np.float64]
+    lam_too: NDArray[np.float64]
+    noise: NDArray[np.int64]
 
 
 def draw(shot: Shot, stories: int, count: int, rng: np.random.Generator) -> Sample:
@@ -68,7 +70,7 @@ def draw(shot: Shot, stories: int, count: int, rng: np.random.Generator) -> Samp
         lam=np.asarray(shot.ease, float)[pick(len(shot.ease))],
         key=pick(2),
         on=pick(2).astype(bool),
-        before=np.array((0.0, 0.5, 1.0))[pick(3)],
+        before=np.array(BEFORE)[pick(3)],
         lens=spread(),
         mu=spread(),
         turn=spread(),
@@ -76,6 +78,8 @@ def draw(shot: Shot, stories: int, count: int, rng: np.random.Generator) -> Samp
         lead=spread(),
         jitter=spread(),
         reach=np.ones(count),
+        lam_too=np.asarray(shot.ease, float)[pick(len(shot.ease))],
+        noise=rng.integers(2**31, size=count),
     )
 
 

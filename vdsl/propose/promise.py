@@ -5,7 +5,13 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from ..cinema.classify import achieved_angle, achieved_angles, achieved_movement, achieved_size
+from ..cinema.classify import (
+    achieved_angle,
+    achieved_angles,
+    achieved_movement,
+    achieved_size,
+    shows_movement,
+)
 from ..cinema.moves import family
 from ..cinema.subject import Subject
 from .types import CameraProposal
@@ -37,7 +43,15 @@ def achieved(camera: CameraProposal, subject: Subject, rig: str) -> Achieved:
     elevation = math.radians(camera.measures["elevation"])
     angles = achieved_angles(elevation, camera.measures["height"], subject, key)
     return Achieved(
-        achieved_movement(camera.track, subject.position),
+        _movement(camera, subject),
         achieved_size(camera.track, subject, key, rig == "paper"),
         camera.angle if camera.angle in angles else achieved_angle(elevation),
     )
+
+
+def _movement(camera: CameraProposal, subject: Subject) -> str:
+    """The family of what the track does; two at once where it does both that were asked for."""
+    asked = family(camera.movement)
+    if "+" in asked and shows_movement(asked, camera.track, subject.position):
+        return asked
+    return achieved_movement(camera.track, subject.position)

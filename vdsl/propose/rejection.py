@@ -11,7 +11,7 @@ from runtime.world import Solids
 
 from ..cinema.angles import lens_height, shows
 from ..cinema.measures import Measured
-from ..cinema.moves import FLOOR_CLEARANCE, family
+from ..cinema.moves import FLOOR_CLEARANCE, families
 from ..cinema.space import Nearby, Stage, clearance
 from ..cinema.subject import Subject
 from ..cinema.vectors import length
@@ -53,6 +53,9 @@ _NEAR_PERSON = 0.12  # to a pillar 0.22 m thick
 _NEAR_FACE = 0.22
 _OUTSIDE = 3.0
 _ABOVE = 1.6  # metres over a ceiling
+#: Movements that change the size, and those that keep it and the subject all the time.
+_RESIZE = {"push", "pull", "zoom", "tilt", "pan", "whip-pan"}
+_KEEP = {"follow", "arc", "crane", "dolly-zoom", "handheld", "roll"}
 _FASTEST, _TURNS = 5.0, 130.0  # metres and degrees a second
 
 
@@ -103,9 +106,10 @@ def reasons(shooting: Shooting, measured: Measured, subject: Subject) -> NDArray
     v, track = measured.values, shooting.track
     paper = shooting.rig == "paper"
     own = length(track.position - subject.landmarks["eyes"][None]).min(axis=1)
-    moving = np.array([family(m) in ("push", "pull", "zoom", "tilt", "pan") for m in shooting.movements])
+    moving = np.array([bool(families(m) & _RESIZE) for m in shooting.movements])
+    whips = np.array(["whip-pan" in families(m) for m in shooting.movements])
     moving |= shooting.view == "pov"  # its owner goes nearer, or farther
-    keeps = np.array([family(m) in ("follow", "arc") for m in shooting.movements])
+    keeps = np.array([families(m) <= _KEEP for m in shooting.movements])
     drift = np.where(moving, 0.0, v["size_drift"])
     holds = np.where(keeps & (not paper), 0.45, 0.9)
     walked = float(np.linalg.norm(np.diff(subject.position, axis=0), axis=1).sum())
@@ -117,7 +121,7 @@ def reasons(shooting: Shooting, measured: Measured, subject: Subject) -> NDArray
         "wrong_view": v["view"] < 0.7,
         "wrong_size": (v["size_error"] > (0.6 if paper else 0.25)) | (drift > holds),
         "wrong_angle": _wrong_angle(shooting, v, subject),
-        "too_fast": (v["speed"] > _FASTEST) | (v["angular_speed"] > _TURNS),
+        "too_fast": (v["speed"] > _FASTEST) | ((v["angular_speed"] > _TURNS) & ~whips),
         "missing_backdrop": v["backdrop_gap"] > 0.12,
     }
     return _first(asked, len(shooting.movements))
@@ -130,7 +134,7 @@ def _wrong_angle(
     out = np.zeros(len(shooting.angles), bool)
     if shooting.rig == "paper":
         return out
-    tilts = np.array([family(m) in ("tilt", "pedestal") for m in shooting.movements])
+    tilts = np.array([bool(families(m) & {"tilt", "pedestal"}) for m in shooting.movements])
     asked = np.array(shooting.angles)
     elevation, height = np.radians(values["elevation"]), values["height"]
     for angle in set(shooting.angles):

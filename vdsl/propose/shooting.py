@@ -10,18 +10,18 @@ from numpy.typing import NDArray
 from ..cinema import rig_cinema, rig_paper
 from ..cinema.angles import CINEMA_THETA, lens_height
 from ..cinema.framing import basis
-from ..cinema.moves import FLOOR_CLEARANCE, SIGN, Draw, family, track_of
+from ..cinema.further import FURTHER, Part, combined
+from ..cinema.moves import FLOOR_CLEARANCE, SIGN, Draw, families, family, track_of
 from ..cinema.sizes import size_of
 from ..cinema.subject import Subject, anchor
+from ..cinema.subspaces import ASIDE, AZIMUTHS, FILM, LEAD, TRAVELS, mu_range, turn_range
 from ..cinema.track import CameraTrack
 from ..lang.ir import Shot
-from .drawing import AZIMUTHS, Sample
+from .drawing import Sample
 from .views import eyes_track, over_shoulder, through_eyes
 
 Array = NDArray[np.float64]
 
-FILM = (30.0, 80.0)  # focal lengths of films, mm (the paper, section 3.2)
-_JITTER = np.radians(9.0)  # how far a camera of ``rig cinema`` may stand off its azimuth
 #: Long lenses need more room than most rooms have, and short ones stand too close to a face.
 _SHORTER = {
     "extreme-close-up": 0.5,
@@ -33,7 +33,6 @@ _SHORTER = {
     "overhead": 3.0,
     "worms-eye": 2.0,
 }
-_LEAD = 0.13  # how far off the middle one who looks sideways may be put, share of the width
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,7 +40,8 @@ class Shooting:
     """P candidates of one story, shot.
 
     order: [P] which of the given rows each is; movements, scales, angles: words, P each
-    key: frame the framing is of; draw: what was drawn, all [P]; lifted: radians off the asked angle to
+    key: frame the framing is of; draw: what was drawn, all [P], second:
+    the same for the second of two movements at once; lifted: radians off the asked angle to
     stay above the floor; relative: azimuth from the subject's heading, radians
     floor: height of the subject's floor, above which cameras stay; view: as in the shot
     """
@@ -54,6 +54,7 @@ class Shooting:
     angles: tuple[str, ...]
     key: NDArray[np.int64]
     draw: Draw
+    second: Draw
     lifted: Array
     relative: Array
     height: Array
@@ -78,6 +79,7 @@ class Shooting:
             tuple(self.angles[p] for p in rows),
             self.key[rows],
             Draw(*(getattr(self.draw, f.name)[rows] for f in fields(Draw))),
+            Draw(*(getattr(self.second, f.name)[rows] for f in fields(Draw))),
             self.lifted[rows],
             self.relative[rows],
             self.height[rows],
@@ -90,11 +92,13 @@ class Shooting:
         time = at / max(frames - 1, 1)
         out = np.ones((len(self.movements), len(at)), bool)
         for p, movement in enumerate(self.movements):
-            kind = family(movement)
-            if kind in ("tilt", "pan"):
+            kinds = families(movement)
+            if kinds & {"whip-pan"}:
+                out[p] = time >= 0.65
+            elif kinds & {"tilt", "pan"}:
                 out[p] = time >= 0.75 if self.draw.on[p] else time <= 0.25
                 out[p, -1 if self.draw.on[p] else 0] = True
-            elif kind in ("dolly", "pedestal") and self.draw.travel[p] > 0 and self.draw.before[p] != 0.5:
+            elif kinds & {"dolly", "pedestal"} and self.draw.travel[p] > 0 and self.draw.before[p] != 0.5:
                 out[p] = time >= 0.4 if self.draw.before[p] == 1.0 else time <= 0.6
         return out
 
@@ -116,12 +120,10 @@ class Shooting:
             out["reference_height"] = float(self.height[p])
         else:
             out |= {f"offset_{a}": float(d.offset[p, k]) for k, a in enumerate("xyz")}
-        if kind in ("push", "pull", "zoom"):
-            out["mu"] = float(d.mu[p])
-        if kind in ("tilt", "pan", "arc"):
-            out["turn"] = float(SIGN[self.movements[p]] * d.turn[p])
-        if kind in ("tilt", "pan"):
-            out["ending"] = "on" if d.on[p] else "off"
+        first, _, too = self.movements[p].partition("+")
+        out |= _moved(first, d, p, "")
+        if too:
+            out |= {"lambda_2": float(self.second.lam[p])} | _moved(too, self.second, p, "_2")
         if kind in ("dolly", "pedestal"):
             for word, t in (("start", 0), ("end", -1)):
                 out |= {f"{word}_{a}": float(self.track.position[p, t, k]) for k, a in enumerate("xyz")}
@@ -129,6 +131,19 @@ class Shooting:
         if self.lifted[p] > 1e-9 or low <= FLOOR_CLEARANCE + 1e-9:
             out["lifted"] = float(self.lifted[p])
         return out
+
+
+def _moved(movement: str, d: Draw, p: int, suffix: str) -> dict[str, float | str]:
+    """What was drawn for one movement."""
+    kind = family(movement)
+    out: dict[str, float | str] = {}
+    if kind in ("push", "pull", "zoom", "dolly-zoom"):
+        out["mu"] = float(d.mu[p])
+    if kind in ("tilt", "pan", "arc", "crane", "roll", "whip-pan"):
+        out["turn"] = float(SIGN[movement] * d.turn[p])
+    if kind in ("tilt", "pan", "roll"):
+        out["ending"] = "on" if d.on[p] else "off"
+    return {name + suffix: value for name, value in out.items()}
 
 
 def shoot(
@@ -175,24 +190,22 @@ def _shoot_one(
 ) -> Shooting:
     """All candidates of one movement and one scale."""
     i = rows[local]
-    kind, last = family(movement), subject.frames - 1
-    key = sample.key[i].copy()
-    on = sample.on[i]
-    if (kind in ("zoom", "follow") and shot.view != "pov") or (rig == "paper" and kind != "static"):
-        key[:] = 0
-    if kind in ("tilt", "pan"):
-        key[:] = on
+    words, last = movement.split("+"), subject.frames - 1
+    kind = family(words[0])
+    key, on = _keys(words, sample.key[i].copy(), sample.on[i], rig, shot.view, asked_high(shot, sample, i))
     at = np.where(key == 1, last, 0)
-    mu = _mu(movement, sample.mu[i])
+    mu = _mu(words[0], sample.mu[i])
+    mu_too = _mu(words[-1], sample.mu[i][::-1])
     angles = tuple(shot.angles[k] for k in sample.angle[i])
     bias = 1.5 if subject.kind == "place" else 1.0
     bend = np.array([bias * _SHORTER.get(scale, 1.0) * _SHORTER.get(a, 1.0) for a in angles])
-    focal = _lens(shot, movement, rig, sample.lens[i] ** bend, mu)
+    zooms = next((w for w in words if "zoom" in w), words[0])
+    focal = _lens(shot, zooms, rig, sample.lens[i] ** bend, mu if zooms == words[0] else mu_too)
     relative: Array = np.asarray(sample.azimuth[i] * (2 * np.pi / AZIMUTHS), float)
     if rig == "cinema":
-        relative = relative + (2 * sample.jitter[i] - 1) * _JITTER
+        relative = relative + (2 * sample.jitter[i] - 1) * np.radians(ASIDE)
     phi = subject.heading[at] + relative
-    lead = sample.lead[i] * _LEAD
+    lead = sample.lead[i] * LEAD
     if rig == "paper":
         path = subject.position + np.array((0.0, 0.0, rig_paper.reference_height(scale, subject.height)))
         r = rig_paper.radius(scale, subject.height, focal)
@@ -223,32 +236,73 @@ def _shoot_one(
             framing = framed(phi, focal)
         r, theta, offset, lifted = framing.r * sample.reach[i], framing.theta, framing.offset, framing.lifted
         height = np.zeros(len(i))
-        if kind in ("push", "pull"):
-            r = np.where(key == 1, r / mu, r)
-    travel, before, key = _travel(subject, movement, sample, i, r, focal, film, phi, key)
-    draw = Draw(
-        r, theta, phi, focal, offset, sample.lam[i], mu, _turn(kind, sample.turn[i]), travel, before, key, on
-    )
+        for word, factor in zip(words, (mu, mu_too), strict=False):
+            if family(word) in ("push", "pull"):
+                r = np.where(key == 1, r / factor, r)
+    travel, before, key = _travel(subject, words[0], sample, i, r, focal, film, phi, key)
+    turn = _turn(kind, sample.turn[i])
+    draw = Draw(r, theta, phi, focal, offset, sample.lam[i], mu, turn, travel, before, key, on)
+    travel, before, _ = _travel(subject, words[-1], sample, i, r, focal, film, phi, key)
+    turn = _turn(family(words[-1]), 1.0 - sample.turn[i])
+    second = replace(draw, lam=sample.lam_too[i], mu=mu_too, turn=turn, travel=travel, before=before)
     if shot.view == "pov" and subject.via is not None:
         track = eyes_track(subject, path, draw, film, shot.roll, kind == "follow", fps)
+    elif len(words) > 1 or kind in FURTHER:
+        parts = [Part(words[0], draw), Part(words[-1], second)][: len(words)]
+        track = combined(parts, path, film, shot.roll, fps, sample.noise[i])
     else:
         track = track_of(movement, path, draw, film, shot.roll)
     n = len(i)
     return Shooting(
-        rig, track, local, (movement,) * n, (scale,) * n, angles, np.where(key == 1, last, 0), draw, lifted,
-        relative, height,
+        rig, track, local, (movement,) * n, (scale,) * n, angles, np.where(key == 1, last, 0), draw, second,
+        lifted, relative, height,
     )  # fmt: skip
 
 
+def asked_high(shot: Shot, sample: Sample, i: NDArray[np.int64]) -> NDArray[np.int64]:
+    """1 for cameras that look straight down, −1 for those that look steeply up, 0 for the others: [P]."""
+    angles = np.array(shot.angles)[sample.angle[i]]
+    return np.asarray((angles == "overhead").astype(int) - (angles == "worms-eye"))
+
+
+def _keys(
+    words: list[str],
+    key: NDArray[np.int64],
+    on: NDArray[np.bool_],
+    rig: str,
+    view: str,
+    steep: NDArray[np.int64],
+) -> tuple[NDArray[np.int64], NDArray[np.bool_]]:
+    """Whether the first frame is framed or the last [P], and whether turns end on the subject."""
+    kinds = families("+".join(words))
+    on = on.copy()
+    if "whip-pan" in kinds:
+        on[:] = True
+    for word in words:
+        if word in ("tilt-up", "tilt-down"):  # never over the vertical
+            up = word == "tilt-up"
+            on = np.where(steep == (-1 if up else 1), True, np.where(steep == 0, on, False))
+    if "crane" in kinds:  # it rises from its angle, or sinks to it
+        on[:] = "crane-down" in words
+    if kinds & {"zoom", "dolly-zoom"} or ("follow" in kinds and view != "pov"):
+        key[:] = 0
+        on = on & (not kinds & {"tilt", "pan", "crane"} or len(words) == 1)
+    elif rig == "paper" and kinds != {"static"}:
+        key[:] = 0
+    if kinds & {"tilt", "pan", "whip-pan", "crane", "roll"} and (
+        len(words) == 1 or not kinds & {"zoom", "dolly-zoom", "follow"}
+    ):
+        key[:] = on
+    return key, on
+
+
 def _mu(movement: str, u: Array) -> Array:
-    """μ ∈ [0.5, 0.8] inwards, (1.0, 1.2] outwards; below 1.05 nothing would be seen to move."""
-    if movement in ("push", "zoom-in"):
-        return 0.5 + 0.3 * u
-    return 1.05 + 0.15 * u
+    low, high = mu_range(movement)
+    return low + (high - low) * u
 
 
 def _turn(kind: str, u: Array) -> Array:
-    low, high = (90.0, 120.0) if kind == "arc" else (30.0, 60.0)
+    low, high = turn_range(kind)
     return np.radians(low + (high - low) * u)
 
 
@@ -271,6 +325,10 @@ def _lens(shot: Shot, movement: str, rig: str, u: Array, mu: Array) -> Array:
     bottom, top = np.full_like(u, low), np.full_like(u, high)
     if movement == "zoom-in":
         top = np.maximum(np.minimum(top, max(high, FILM[1]) * mu), bottom)
+    elif movement == "dolly-zoom-in":
+        bottom = np.minimum(np.maximum(bottom, min(low, FILM[0]) / mu), top)
+    elif movement == "dolly-zoom-out":
+        top = np.maximum(np.minimum(top, max(high, FILM[1]) / mu), bottom)
     elif movement == "zoom-out":
         bottom = np.minimum(np.maximum(bottom, min(low, FILM[0]) * mu), top)
     return np.asarray(bottom * (top / bottom) ** u)
@@ -295,12 +353,17 @@ def _travel(
         along = SIGN[movement] * basis(np.full_like(phi, np.pi / 2), phi)[0]
         walked = ((subject.position[-1] - subject.position[0]) * along).sum(-1)
         with_it = walked > 0.5
-        travel = np.clip((0.22 + 0.2 * u) * r * film[0] / focal, 0.3, 3.0)
+        travel = np.clip(_between("dolly", u) * r * film[0] / focal, 0.3, 3.0)
         travel = np.where(with_it, walked * (0.85 + 0.2 * u), travel)
         return travel, np.where(with_it, np.where(key == 1, 1.0, 0.0), before), key
     if kind == "pedestal":
-        return np.clip((0.3 + 0.35 * u) * r * film[1] / focal, 0.2, 2.0), before, key
+        return np.clip(_between("pedestal", u) * r * film[1] / focal, 0.2, 2.0), before, key
     return np.zeros_like(u), before, key
+
+
+def _between(kind: str, u: Array) -> Array:
+    low, high = TRAVELS[kind]
+    return low + (high - low) * u
 
 
 def _joined(parts: list[Shooting]) -> Shooting:
@@ -317,6 +380,7 @@ def _joined(parts: list[Shooting]) -> Shooting:
         parts[0].track.sensor,
     )
     draw = Draw(*(np.concatenate([getattr(p.draw, f.name) for p in parts]) for f in fields(Draw)))
+    second = Draw(*(np.concatenate([getattr(p.second, f.name) for p in parts]) for f in fields(Draw)))
     return Shooting(
         parts[0].rig,
         track,
@@ -326,6 +390,7 @@ def _joined(parts: list[Shooting]) -> Shooting:
         tuple(w for p in parts for w in p.angles),
         cat("key").astype(np.int64),
         draw,
+        second,
         cat("lifted"),
         cat("relative"),
         cat("height"),

@@ -135,19 +135,25 @@ def test_the_space_of_a_shot_is_shown(folder: Path) -> None:
     assert {v["symbol"] for v in space["free"]} == {"φ", "Δφ", "f", "lead", "λ"}
 
 
-def test_documented_fields_are_the_fields(folder: Path) -> None:
-    def fields(value: object, prefix: str = "") -> set[str]:
-        out: set[str] = set()
-        if isinstance(value, dict):
-            for key, inner in value.items():
-                free = key in ("measures", "rejected", "penalties", "gains")
-                out |= {prefix + key} | (set() if free else fields(inner, f"{prefix}{key}."))
-        elif isinstance(value, list) and value and isinstance(value[0], dict):
-            out |= fields(value[0], prefix[:-1] + "[].")
-        return out
+def fields(value: object, prefix: str = "") -> set[str]:
+    """Paths of all fields; those of free-form maps are none."""
+    out: set[str] = set()
+    if isinstance(value, dict):
+        for key, inner in value.items():
+            free = key in ("measures", "rejected", "penalties", "gains", "fixed")
+            out |= {prefix + key} | (set() if free else fields(inner, f"{prefix}{key}."))
+    elif isinstance(value, list):
+        out |= {field for inner in value for field in fields(inner, prefix[:-1] + "[].")}
+    return out
 
-    section = DOCS.read_text("utf-8").split("## `vds.why/1`", 1)[1].split("\n## ", 1)[0]
-    documented = set(re.findall(r"^\| `([^`]+)` \|", section, re.MULTILINE))
-    assert documented - {"advice.why", "advice.instead"} == fields(
-        explained(folder / "story.vds", "1", "-b", folder / "out")
-    )
+
+def documented_fields(schema: str) -> set[str]:
+    section = DOCS.read_text("utf-8").split(f"## `{schema}`", 1)[1].split("\n## ", 1)[0]
+    return set(re.findall(r"^\| `([^`]+)` \|", section, re.MULTILINE))
+
+
+def test_documented_fields_are_the_fields(folder: Path) -> None:
+    space = json.loads(vdsc("why", folder / "story.vds", "1", "--space", "--json").stdout)
+    assert documented_fields("vds.space/1") == fields(space)
+    told = explained(folder / "story.vds", "1", "-b", folder / "out")
+    assert documented_fields("vds.why/1") - {"advice.why", "advice.instead"} == fields(told)

@@ -95,7 +95,7 @@ def subspace(
     """
     parts, cinema = movement.split("+"), rig == "cinema"
     fixed = [
-        ("p̂", "the subject, by a smoothed path" if cinema else f"the subject, at the height of {scale}"),
+        ("p", "the subject, by a smoothed path" if cinema else f"the subject, at the height of {scale}"),
         ("r", f"solved so that {scale} fills the frame" if cinema else f"the share of h that {scale} has"),
         ("θ", f"{angle}, raised where it would be under the floor"),
         ("roll", "as the line says"),
@@ -105,7 +105,7 @@ def subspace(
     if cinema:
         free += [
             Variable("Δφ", "off that azimuth", "°", -ASIDE, ASIDE),
-            Variable("f", "focal length at the first frame", "mm", *lens),
+            Variable("f", "focal length at the first frame", "mm", *lens, _only(lens)),
             Variable("lead", "off the middle, towards where nobody looks", "of the width", 0.0, LEAD),
         ]
     else:
@@ -116,6 +116,11 @@ def subspace(
         free.append(Variable("λ′", "easing of the second movement", "", grid=lam))
     own = [v for part in parts for v in _own(part, family(part), cinema)]
     return Subspace(tuple(fixed), (*free, *dict.fromkeys(own)))
+
+
+def _only(lens: tuple[float, float]) -> tuple[float, ...]:
+    """The grid of a line that names one lens."""
+    return lens[:1] if lens[0] == lens[1] else ()
 
 
 def _own(movement: str, kind: str, cinema: bool) -> list[Variable]:

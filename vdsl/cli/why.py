@@ -187,14 +187,14 @@ def _take(told: dict[str, Any], judge: str, asked: dict[str, list[str]]) -> Iter
     for name, m in told["measures"].items():
         mark = " " if m["fine"] else "!"
         shown = f"{round(m['value'], 3) + 0.0:.3f}".replace("-", "−")
-        yield f"{mark} {name.replace('_', ' '):<15} {shown:>9} {m['unit']:<13} {m['good']}"
+        yield f"{mark} {name.replace('_', ' '):<18} {shown:>9} {m['unit']:<13} {m['good']}"
     yield ""
     for t in told["terms"]:
-        yield f"  {t['part'].replace('_', ' '):<15} {t['value']:9.3f} × {t['weight']:.2f} = {t['points']:.3f}"
+        yield f"  {t['part'].replace('_', ' '):<18} {t['value']:9.3f} × {t['weight']:.2f} = {t['points']:.3f}"
     for name, left in told["penalties"].items():
         if left < 0.9995:
-            yield f"  {name.replace('_', ' '):<15} × {left:.3f}"
-    yield f"  geometry score  {told['geometry']:9.3f}"
+            yield f"  {name.replace('_', ' '):<18} × {left:.3f}"
+    yield f"  {'geometry score':<18} {told['geometry']:9.3f}"
     if judge == "ranker" and told["logit"] is not None:
         yield f"  log odds: {told['logit']:.2f} from the pictures, {told['prior']:+.2f} from the geometry"
     yield ""

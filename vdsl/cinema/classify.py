@@ -139,7 +139,7 @@ def _shakes(track: CameraTrack, position: Array) -> bool:
 def _whips(track: CameraTrack, position: Array) -> bool:
     step = np.abs(np.diff(track.rotation[:, 2]))
     still = np.linalg.norm(np.ptp(track.position, axis=0)) < 0.05
-    return bool(still and step.sum() > np.radians(50.0) and step.max() > 2.5 * step.mean())
+    return bool(still and step.sum() > np.radians(50.0) and step.max() > 4.0 * step.mean())
 
 
 def _right(track: CameraTrack, position: Array) -> float:
@@ -155,9 +155,19 @@ def _aside(track: CameraTrack, position: Array, axis: int) -> float:
     return float(np.ptp(np.unwrap(own)))
 
 
+def _stands(track: CameraTrack, position: Array) -> bool:
+    """Neither moved nor turned, but for what a second movement adds."""
+    return True
+
+
+def _keeps(track: CameraTrack, position: Array) -> bool:
+    """Stays turned to its subject."""
+    return max(_aside(track, position, 1), _aside(track, position, 2)) < np.radians(25.0)
+
+
 _SHOWS: dict[str, Callable[[CameraTrack, Array], bool]] = {
-    "static": lambda track, position: True,
-    "follow": lambda track, position: True,
+    "static": _stands,
+    "follow": _keeps,
     "push": lambda track, position: _reaches(track, position) < -0.1,
     "pull": lambda track, position: _reaches(track, position) > 0.02,
     "zoom": lambda track, position: bool(abs(np.log(track.focal[-1] / track.focal[0])) > 0.02),

@@ -12,7 +12,7 @@ from ..cinema.classify import (
     achieved_size,
     shows_movement,
 )
-from ..cinema.moves import family
+from ..cinema.moves import families, family
 from ..cinema.subject import Subject
 from .types import CameraProposal
 
@@ -28,12 +28,15 @@ class Achieved:
     def kept(self, camera: CameraProposal) -> dict[str, bool]:
         """Which of the take's own words came out as they were meant.
 
+        Tilts and pedestals pass through angles.
         A camera that the floor held up looks up less than a low angle does, and counts as one.
         """
         return {
             "movement": family(camera.movement) == self.movement,
             "scale": camera.scale == self.scale,
-            "angle": camera.angle == self.angle or "lifted" in camera.params,
+            "angle": camera.angle == self.angle
+            or "lifted" in camera.params
+            or bool(families(camera.movement) & {"tilt", "pedestal"}),
         }
 
 
@@ -50,8 +53,8 @@ def achieved(camera: CameraProposal, subject: Subject, rig: str) -> Achieved:
 
 
 def _movement(camera: CameraProposal, subject: Subject) -> str:
-    """The family of what the track does; two at once where it does both that were asked for."""
+    """The family of what the track does: that which was asked for where it may be called so."""
     asked = family(camera.movement)
-    if "+" in asked and shows_movement(asked, camera.track, subject.position):
+    if asked != "static" and shows_movement(asked, camera.track, subject.position):
         return asked
     return achieved_movement(camera.track, subject.position)

@@ -28,6 +28,7 @@ REASONS = (
     "subject_out_of_frame",
     "subject_hidden",
     "wrong_view",
+    "wrong_movement",
     "wrong_size",
     "wrong_angle",
     "too_fast",
@@ -119,12 +120,24 @@ def reasons(shooting: Shooting, measured: Measured, subject: Subject) -> NDArray
         "subject_out_of_frame": v["in_frame"] < np.where(keeps, 0.85, 0.5 if walked > 0.5 else 0.7),
         "subject_hidden": (v["visibility"] < 0.6) | (v["head_visible"] < 0.5) | (v["foreground"] > 0.5),
         "wrong_view": v["view"] < 0.7,
+        "wrong_movement": _does_not_rise(shooting),
         "wrong_size": (v["size_error"] > (0.6 if paper else 0.25)) | (drift > holds),
         "wrong_angle": _wrong_angle(shooting, v, subject),
         "too_fast": (v["speed"] > _FASTEST) | ((v["angular_speed"] > _TURNS) & ~whips),
         "missing_backdrop": v["backdrop_gap"] > 0.12,
     }
     return _first(asked, len(shooting.movements))
+
+
+def _does_not_rise(shooting: Shooting) -> NDArray[np.bool_]:
+    """Pedestals and cranes that floor or zenith leave hardly any way."""
+    if shooting.rig == "paper":
+        return np.zeros(len(shooting.movements), bool)
+    position, pitch = shooting.track.position, shooting.track.rotation[..., 1]
+    pedestals = np.array(["pedestal" in families(m) for m in shooting.movements])
+    cranes = np.array(["crane" in families(m) for m in shooting.movements])
+    risen = np.abs(position[:, -1, 2] - position[:, 0, 2])
+    return np.asarray((pedestals & (risen < 0.1)) | (cranes & (np.ptp(pitch, axis=1) < np.radians(10.0))))
 
 
 def _wrong_angle(

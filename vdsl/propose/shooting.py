@@ -282,8 +282,8 @@ def _keys(
         if word in ("tilt-up", "tilt-down"):  # never over the vertical
             up = word == "tilt-up"
             on = np.where(steep == (-1 if up else 1), True, np.where(steep == 0, on, False))
-    if "crane" in kinds:  # it rises from its angle, or sinks to it
-        on[:] = "crane-down" in words
+    if "crane" in kinds:  # it rises from its angle or sinks to it; to and from overhead, which is the top
+        on = np.where(steep == 1, "crane-up" in words, "crane-down" in words)
     if kinds & {"zoom", "dolly-zoom"} or ("follow" in kinds and view != "pov"):
         key[:] = 0
         on = on & (not kinds & {"tilt", "pan", "crane"} or len(words) == 1)

@@ -128,12 +128,14 @@ class _Cutter:
             )
 
 
-def cut(source: Source, report: Report) -> list[Line]:
-    """The logical lines of a source, nested as its braces are."""
+def cut(source: Source, report: Report, start: int = 0, end: int | None = None) -> list[Line]:
+    """The logical lines of a source (or of a part of it, by offsets), nested as its braces are."""
     text = source.text
     c = _Cutter(source, report)
     blank = False  # the physical line so far holds nothing
-    for match in _PIECE.finditer(text, 1 if text.startswith("\ufeff") else 0):
+    for match in _PIECE.finditer(
+        text, start or int(text.startswith("\ufeff")), len(text) if end is None else end
+    ):
         piece, at = match.group(), match.start()
         first = piece[0]
         if first == "\n":

@@ -69,11 +69,13 @@ def _broken(source: Source, line: Line) -> ast.Broken:
     return ast.Broken(keyword, name, Span(source, line.start, line.end))
 
 
-def parse_definition(source: Source, kind: str, name: str, report: Report) -> ast.Definition | None:
-    """One definition of a file, leaving the rest of the file unread."""
+def parse_definition(
+    source: Source, kind: str, name: str, report: Report, start: int = 0, end: int | None = None
+) -> ast.Definition | None:
+    """One definition of a file, leaving the rest unread; start, end: the offsets it stands between."""
     head = re.compile(rf"{kind}[ \t]+{re.escape(name)}(?![\w.-])")
     reader = _Reader(source, report)
-    for line in cut(source, report):
+    for line in cut(source, report, start, end):
         if head.match(source.text, line.start):
             statement = reader.statement(line)
             return statement if isinstance(statement, ast.Definition) else None

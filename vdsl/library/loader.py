@@ -36,7 +36,7 @@ class Catalog:
         self._library = library
         self._own: dict[tuple[str, str], ast.Definition | ast.FileDefinition] = {}
         self._folder = Path()
-        self._index: dict[str, dict[str, Source]] = {}
+        self._index: dict[str, dict[str, tuple[Source, int, int]]] = {}
         self._digests: dict[str, str] = {}
         self._unread: set[tuple[str, str]] = set()
         self._read: dict[tuple[str, str], DefinitionBase | None] = {}
@@ -80,7 +80,8 @@ class Catalog:
         """The source a definition comes from."""
         if (kind, name) in self._own:
             return self._own[kind, name].span.source
-        return self._scan(kind).get(name)
+        found = self._scan(kind).get(name)
+        return found[0] if found is not None else None
 
     def written(self, kind: str, names: Iterable[str]) -> tuple[str, ...] | None:
         """What decides about definitions, found without parsing any: the text of each that is the script's
@@ -95,7 +96,7 @@ class Catalog:
     def _digest(self, kind: str) -> str:
         """Of the library's files of a kind."""
         if kind not in self._digests:
-            sources = {s.name: s.text for s in self._scan(kind).values()}
+            sources = {s.name: s.text for s, _, _ in self._scan(kind).values()}
             told = "\0".join(part for name in sorted(sources) for part in (Path(name).name, sources[name]))
             self._digests[kind] = hashlib.sha256(told.encode()).hexdigest()
         return self._digests[kind]
@@ -131,15 +132,17 @@ class Catalog:
                     notes=[(first.name.span, "first here")],
                 )
 
-    def _scan(self, kind: str) -> dict[str, Source]:
-        """Names of a kind in the library, with the file each is in."""
+    def _scan(self, kind: str) -> dict[str, tuple[Source, int, int]]:
+        """Names of a kind in the library, with the file each is in and where in it."""
         if kind not in self._index:
-            found: dict[str, Source] = {}
+            found: dict[str, tuple[Source, int, int]] = {}
             for path in sorted((self._library / FOLDERS[kind]).glob("*.vds")):
                 source = Source(str(path), path.read_text(encoding="utf-8"))
-                for match in _HEAD.finditer(source.text):
-                    if match.group(1) == kind:
-                        found.setdefault(match.group(2), source)
+                heads = list(_HEAD.finditer(source.text))
+                ends = [*(head.start() for head in heads[1:]), len(source.text)]
+                for head, end in zip(heads, ends, strict=True):
+                    if head.group(1) == kind:
+                        found.setdefault(head.group(2), (source, head.start(), end))
             self._index[kind] = found
         return self._index[kind]
 
@@ -153,8 +156,11 @@ class Catalog:
             return self._own[kind, name]
         if (kind, name) in self._unread:  # it is there, and reported
             return None
-        source = self._scan(kind).get(name)
-        return None if source is None else parse_definition(source, kind, name, self.report)
+        found = self._scan(kind).get(name)
+        if found is None:
+            return None
+        source, start, end = found
+        return parse_definition(source, kind, name, self.report, start, end)
 
 
 def _reader(kind: str) -> Callable[[ast.Definition, Report], DefinitionBase | None]:

@@ -4,7 +4,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 STAMP := $(VENV)/.installed
 
-.PHONY: demo test lint bench reference clean
+.PHONY: demo test lint bench reference styles gallery clean
 
 demo: $(STAMP)
 	$(BIN)/vdsc compile examples/coffee.vds
@@ -23,6 +23,14 @@ bench: $(STAMP)
 # The pages of docs/library, with their pictures, from the library itself.
 reference: $(STAMP)
 	$(BIN)/python -m vdsl.pipeline.reference docs/library
+
+# The pages of docs/styles, with a strip of every camera style.
+styles: $(STAMP)
+	$(BIN)/python -m vdsl.pipeline.catalogue docs/styles
+
+# The looked-at pictures of docs/gallery: every set by day and by night in the looks, and hard cases.
+gallery: $(STAMP)
+	$(BIN)/python -m vdsl.pipeline.gallery docs/gallery
 
 # torch goes first and pinned: asked for by another package, PyPI's newest build
 # brings several gigabytes of CUDA along.

@@ -1,7 +1,7 @@
 """Frozen settings of the model and its training, kept as JSON beside the weights.
 
-``PAPER`` is the recipe of the paper's sections 3.3 and 4.1; ``CPU`` reaches something useful from
-scratch on two cores in under half an hour: small pictures first, the full size at the end.
+``PAPER`` is the recipe of the paper's sections 3.3 and 4.1; ``CPU`` is meant for two cores: small pictures
+first, few epochs, fewer frames of a clip.
 """
 
 from __future__ import annotations
@@ -55,6 +55,7 @@ class TrainConfig:
     smoothing: label smoothing; held_out: share of the clips, by whole groups, kept for evaluation
     calibration: batches over which batch-norm statistics are taken anew at full size at the end
     autocast: compute in bfloat16 where the network allows; augment: mirror, and vary the light
+    watched: held-out clips looked at after every epoch, for the curves
     backbone, size: of the model, at inference
     """
 
@@ -77,20 +78,23 @@ class TrainConfig:
     size: int = 224
     seed: int = 0
     threads: int = 2
+    watched: int = 256
 
 
 PAPER = TrainConfig(phases=(Phase(epochs=60, size=224, batch=128),))
 CPU = TrainConfig(
     phases=(
-        Phase(epochs=10, size=96, frames=3, key_frames=1, batch=32),
-        Phase(epochs=3, size=128, frames=3, key_frames=1, batch=32),
-        Phase(epochs=1, size=224, frames=2, key_frames=1, batch=32),
+        Phase(epochs=7, size=96, frames=3, key_frames=1, batch=32),
+        Phase(epochs=2, size=128, frames=3, key_frames=1, batch=32),
+        Phase(epochs=1, size=160, frames=2, key_frames=1, batch=32),
     ),
     momentum=0.99,
     contrast_weight=0.25,
     smoothing=0.05,
 )
 RECIPES = {"paper": PAPER, "cpu": CPU}
+#: The trainings of the ablation by the names of their folders: whether L_c and L_q count.
+ABLATION = {"b": (False, False), "b+c": (True, False), "b+q": (False, True), "b+c+q": (True, True)}
 
 
 @dataclass(frozen=True)

@@ -11,7 +11,7 @@ import hashlib
 import json
 import os
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, field
 from functools import cached_property
 from pathlib import Path
 from types import TracebackType
@@ -34,6 +34,8 @@ class Label:
     professional: chosen, or a negative; movement, scale, angle: words, or None where not known
     group: clips that belong together (a set with its cast, say) and never stand on both sides of the
         split; strength: 0 for a positive, else how far the negative was perturbed (0..1)
+    split: ``train`` or ``test`` where who made the set says so, else ""
+    about: what else is known, for evaluation and for people; plain values
     """
 
     professional: bool
@@ -42,6 +44,8 @@ class Label:
     angle: str | None
     group: str
     strength: float
+    split: str = ""
+    about: dict[str, Any] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -56,16 +60,26 @@ class Words:
 class ShardWriter:
     """Writes a training set; a folder that holds one already is gone on with.
 
-    size: (height, width) of the frames; ``len(writer)`` is how many clips are safely on disk, so a
-    generator that draws its clips by index starts again there. Use as a context manager.
+    size: (height, width) of the frames; shard: clips after which a shard is written, None for SHARD
+    made: how the set is made, kept in its header: it is gone on with only by who says the same
+    ``len(writer)`` is how many clips are safely on disk, so a generator that draws its clips by index
+    starts again there. Use as a context manager.
     """
 
     def __init__(
-        self, folder: str | Path, words: Words, size: tuple[int, int] = (224, 224), frames: int = 8
+        self,
+        folder: str | Path,
+        words: Words,
+        size: tuple[int, int] = (224, 224),
+        frames: int = 8,
+        shard: int | None = None,
+        made: dict[str, Any] | None = None,
     ) -> None:
-        self.folder, self.words = Path(folder), words
+        self.folder, self.words, self.shard = Path(folder), words, shard or SHARD
         self.shape = (frames, *size, 3)
         header = {"schema": SCHEMA, **asdict(words), "size": list(size), "frames": frames}
+        if made:
+            header["made"] = made
         header = json.loads(json.dumps(header))
         try:
             self.folder.mkdir(parents=True, exist_ok=True)
@@ -76,7 +90,7 @@ class ShardWriter:
             else:
                 _replace(path, json.dumps(header, indent=1, ensure_ascii=False).encode())
             found = _shards(self.folder)
-            self._done = sum(len(_labels(p)) for p in found)
+            self.labels = [label for p in found for label in _labels(p)]
             self._next = 1 + max((int(p.stem.split("-")[1]) for p in found), default=-1)
         except (OSError, ValueError) as error:
             raise RankerError(f"{folder}: cannot be used as a training set: {error}") from error
@@ -84,7 +98,12 @@ class ShardWriter:
         self._pending: list[Label] = []
 
     def __len__(self) -> int:
-        return self._done
+        return len(self.labels)
+
+    @property
+    def pending(self) -> int:
+        """Clips that are not on disk yet."""
+        return len(self._pending)
 
     def add(
         self,
@@ -95,6 +114,8 @@ class ShardWriter:
         angle: str | None,
         group: str,
         strength: float,
+        split: str = "",
+        about: dict[str, Any] | None = None,
     ) -> None:
         """Append a clip: uint8 [T, H, W, 3]; see :class:`Label` for the rest."""
         if frames.shape != self.shape or frames.dtype != np.uint8:
@@ -107,8 +128,9 @@ class ShardWriter:
             if word is not None and word not in known:
                 raise ValueError(f"{word!r} is not one of the set's words {known}")
         self._frames.append(frames.copy())
-        self._pending.append(Label(bool(label), movement, scale, angle, group, float(strength)))
-        if len(self._pending) >= SHARD:
+        made = Label(bool(label), movement, scale, angle, group, float(strength), split, about or {})
+        self._pending.append(made)
+        if len(self._pending) >= self.shard:
             self.flush()
 
     def flush(self) -> None:
@@ -126,7 +148,7 @@ class ShardWriter:
         except OSError as error:
             part.unlink(missing_ok=True)
             raise RankerError(f"{base}.npy: cannot be written: {error.strerror or error}") from error
-        self._done += len(self._pending)
+        self.labels += self._pending
         self._next += 1
         self._frames, self._pending = [], []
 
@@ -136,7 +158,8 @@ class ShardWriter:
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        self.flush()
+        if kind is None:  # what is pending where something failed may be half of what belongs together
+            self.flush()
 
 
 class Dataset:
@@ -149,7 +172,7 @@ class Dataset:
             if header["schema"] != SCHEMA:
                 raise ValueError(f"schema {header['schema']}")
             self.words = Words(*(tuple(header[k]) for k in ("movements", "scales", "angles")))
-            self.frames = int(header["frames"])
+            self.frames, self.made = int(header["frames"]), dict(header.get("made") or {})
             self.labels: list[Label] = []
             self._where: list[tuple[int, int]] = []
             self._arrays: list[NDArray[np.uint8]] = []
@@ -198,8 +221,12 @@ class Dataset:
     def split(self, share: float, seed: int) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
         """Indices to train on, and held out: whole groups in a random order until ``share`` is reached.
 
-        With a share above 0 and more than one group both sides have at least one.
+        With a share above 0 and more than one group both sides have at least one. Where the labels say
+        themselves what is for testing, that is held out, whatever the share, unless it is 0.
         """
+        told = np.array([label.split == "test" for label in self.labels], bool)
+        if share > 0 and told.any():
+            return np.flatnonzero(~told), np.flatnonzero(told)
         groups: dict[str, list[int]] = {}
         for i, label in enumerate(self.labels):
             groups.setdefault(label.group, []).append(i)
@@ -222,6 +249,7 @@ class Dataset:
             "positives": positives,
             "negatives": len(self) - positives,
             "groups": len({la.group for la in self.labels}),
+            **({"made": self.made} if self.made else {}),
         }
 
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import copy
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields
 from pathlib import Path
 
@@ -80,25 +80,36 @@ class Ranker:
         return Scores(**joined)
 
     @torch.inference_mode()
+    def glance(self, frames: NDArray[np.uint8], at: Sequence[int]) -> Scores:
+        """Judge shots by some of their frames: uint8 [P, k, size, size, 3], the frames ``at`` of all.
+
+        In the last bits they depend on what is looked at together.
+        """
+        size, at = self.config.size, list(at)
+        if not at or frames.shape[1:] != (len(at), size, size, 3) or frames.dtype != np.uint8:
+            raise ValueError(
+                f"expected uint8 [P, {len(at)}, {size}, {size}, 3], got {frames.dtype} {frames.shape}"
+            )
+        flat = frames.reshape(-1, size, size, 3)
+        room = self._batch * self.config.frames
+        parts = [self._encoded(flat[i : i + room]) for i in range(0, max(len(flat), 1), room)]
+        features = torch.cat(parts).view(len(frames), len(at), self._model.width)
+        return _scores(self._model.judge(features, self._times[at].expand(len(frames), -1)))
+
+    def _encoded(self, pictures: NDArray[np.uint8]) -> Tensor:
+        """Features [N, D] of N pictures, no more than go through at once."""
+        room, count = self._batch * self.config.frames, len(pictures)
+        padded = np.zeros((room, *pictures.shape[1:]), np.uint8)
+        padded[:count] = pictures
+        flat = normalised(torch.from_numpy(padded).to(self.device)).to(torch.bfloat16)
+        return self._features(flat.contiguous(memory_format=torch.channels_last)).float()[:count]
+
+    @torch.inference_mode()
     def _score(self, frames: NDArray[np.uint8]) -> Scores:
-        count, config = len(frames), self.config
-        padded = frames
-        if count < self._batch:
-            shape = (self._batch - count, *frames.shape[1:])
-            padded = np.concatenate([frames, np.zeros(shape, np.uint8)])
-        pictures = torch.from_numpy(padded.copy()).to(self.device)
-        flat = normalised(pictures.flatten(0, 1)).to(torch.bfloat16)
-        features = self._features(flat.contiguous(memory_format=torch.channels_last)).float()
-        features = features.view(self._batch, config.frames, -1)
-        out: Output = self._model.judge(features, self._times.expand(self._batch, -1))
-        return Scores(
-            _array(out.logit.sigmoid()[:count]),
-            _array(out.logit[:count]),
-            _array(out.movement.softmax(1)[:count]),
-            _array(out.scale.softmax(1)[:count]),
-            _array(out.angle.softmax(1)[:count]),
-            _array(out.feature[:count]),
-        )
+        count = len(frames)
+        features = self._encoded(frames.reshape(-1, *frames.shape[2:]))
+        features = features.view(count, self.config.frames, self._model.width)
+        return _scores(self._model.judge(features, self._times.expand(count, -1)))
 
     def _backbone(self) -> Callable[[Tensor], Tensor]:
         """The frame encoder for one fixed batch: bfloat16 pictures [N, 3, S, S] -> features [N, D]."""
@@ -134,6 +145,17 @@ def fold_batch_norm(backbone: nn.Module) -> nn.Module:
         parent.add_module(conv, fuse_conv_bn_eval(before, norm))
         parent.add_module(leaf, nn.Identity())
     return folded
+
+
+def _scores(out: Output) -> Scores:
+    return Scores(
+        _array(out.logit.sigmoid()),
+        _array(out.logit),
+        _array(out.movement.softmax(1)),
+        _array(out.scale.softmax(1)),
+        _array(out.angle.softmax(1)),
+        _array(out.feature),
+    )
 
 
 def _array(values: Tensor) -> NDArray[np.float32]:

@@ -1,8 +1,8 @@
 """Training, from clips to weights: read it from top to bottom.
 
 Assumes a training set written by :class:`ranker.data.ShardWriter`. Leaves ``weights/`` (to be loaded
-by :class:`ranker.infer.Ranker`), ``log.jsonl`` and ``checkpoint.pt`` in the output folder. Stopped at
-any time, it goes on from the last whole epoch with the same result as if it had not been stopped.
+by :class:`ranker.infer.Ranker`), ``log.jsonl``, ``curves.svg`` and ``checkpoint.pt`` in the output folder.
+Stopped at any time, it goes on from the last whole epoch with the same result as if it had not been stopped.
 """
 
 from __future__ import annotations
@@ -13,19 +13,22 @@ import os
 import time
 from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, NamedTuple
 
+import cv2
 import numpy as np
 import torch
 from numpy.typing import NDArray
 from torch import Tensor, nn
 
-from .config import CPU, ModelConfig, Phase, TrainConfig, to_json
+from .config import PAPER, ModelConfig, Phase, TrainConfig, to_json
+from .curves import draw_curves
 from .data import Dataset
 from .dictionary import Dictionary, follow, momentum_copy
 from .errors import RankerError
-from .evaluate import evaluate
+from .evaluate import evaluate, mean
 from .losses import binary_loss, class_loss, contrast_loss
 from .model import ShotRanker, frame_times, normalised
 from .weights import save_weights
@@ -46,12 +49,13 @@ class Batch(NamedTuple):
 
 
 def train(
-    data_dir: str | Path, out_dir: str | Path, config: TrainConfig = CPU, report: Report | None = None
+    data_dir: str | Path, out_dir: str | Path, config: TrainConfig = PAPER, report: Report | None = None
 ) -> dict[str, Any]:
     """Train a ranker and return what it measures on the held-out groups.
 
     report: called with every line of the log: ``epoch``, ``step``, ``steps``, ``loss`` and its parts,
-    ``seconds``; at last ``measured``
+    ``held_out`` (accuracies on some of the held-out clips, at the phase's size), ``seconds``; at last
+    ``measured``
     """
     out = Path(out_dir)
     out.mkdir(parents=True, exist_ok=True)
@@ -111,8 +115,10 @@ def train(
                 "step": step,
             }
             line |= {n: round(float(v) / lengths[epoch], 5) for n, v in zip(names, sums, strict=True)}
+            line["held_out"] = watch(model, data, held, phase.size, config, device)
             line |= {"steps": sum(lengths), "seconds": round(time.monotonic() - start, 1)}
             _tell(log, line, report)
+            draw_curves(out)
             _keep(state, config, model, keys, dictionary, optimizer, epoch + 1, step)
 
         # Small pictures leave batch norm with the wrong statistics for full ones.
@@ -131,6 +137,37 @@ def learning_rate(config: TrainConfig, step: int, steps: int) -> float:
         return config.learning_rate * (step + 1) / warm
     along = (step - warm) / max(1, steps - warm)
     return config.learning_rate * (0.01 + 0.99 * 0.5 * (1 + math.cos(math.pi * along)))
+
+
+@torch.no_grad()
+def watch(
+    model: ShotRanker,
+    data: Dataset,
+    held: NDArray[np.int64],
+    size: int,
+    config: TrainConfig,
+    device: torch.device,
+) -> dict[str, float | None]:
+    """Shares of some of the held-out clips that are judged rightly, at a picture size: for the curves."""
+    some = np.random.default_rng(config.seed).permutation(held)[: config.watched]
+    phase = Phase(1, size, data.frames, 0, batch=16)
+    plain = replace(config, augment=False, contrast_weight=0.0)
+    was = model.training
+    model.eval()
+    right: list[NDArray[np.float64]] = []
+    for batch in _batches(data, some, phase, plain, epoch=-1) if len(some) else ():
+        with torch.autocast(device.type, torch.bfloat16, enabled=config.autocast):
+            out = model(normalised(batch.query.to(device)), batch.query_times.to(device))
+        good, classes = batch.professional.numpy() > 0.5, batch.classes.numpy()
+        found = np.stack([p.argmax(1).cpu().numpy() for p in (out.movement, out.scale, out.angle)], 1)
+        known = (classes >= 0) & good[:, None]
+        judged = ((out.logit > 0).cpu().numpy() == good).astype(float)[:, None]
+        right.append(np.concatenate([judged, np.where(known, found == classes, np.nan)], 1))
+    model.train(was)
+    if not right:
+        return {}
+    columns = zip(("professional", "movement", "scale", "angle"), np.concatenate(right).T, strict=True)
+    return {name: mean(column) for name, column in columns}
 
 
 @torch.no_grad()
@@ -188,15 +225,17 @@ def _batches(
     parts = [order[i : i + phase.batch] for i in range(0, len(order), phase.batch)]
     if len(parts) > 1 and len(parts[-1]) == 1:  # batch norm needs company
         parts[-1] = np.append(parts[-1], order[0])
-    with ThreadPoolExecutor(1) as reader:
+    ahead = max(2, config.threads)
+    with ThreadPoolExecutor(max(1, config.threads // 2)) as readers:
         made = [
-            reader.submit(_batch, data, part, phase, config, (epoch + 1, n))
-            for n, part in enumerate(parts[:2])
+            readers.submit(_batch, data, part, phase, config, (epoch + 1, n))
+            for n, part in enumerate(parts[:ahead])
         ]
         for n in range(len(parts)):
             batch = made.pop(0).result()
-            if n + 2 < len(parts):
-                made.append(reader.submit(_batch, data, parts[n + 2], phase, config, (epoch + 1, n + 2)))
+            if n + ahead < len(parts):
+                key = (epoch + 1, n + ahead)
+                made.append(readers.submit(_batch, data, parts[n + ahead], phase, config, key))
             yield batch
 
 
@@ -241,7 +280,9 @@ def varied(clip: NDArray[np.uint8], rng: np.random.Generator) -> tuple[NDArray[n
     gain = rng.uniform(0.85, 1.15) * rng.uniform(0.95, 1.05, 3)
     lift = rng.uniform(-18, 18)
     table = np.clip((np.arange(256)[:, None] - 128) * gain + 128 + lift, 0, 255).astype(np.uint8)
-    out = np.stack([table[clip[..., c], c] for c in range(3)], -1)
+    count, height, width = clip.shape[:3]
+    tall = np.ascontiguousarray(clip).reshape(count * height, width, 3)
+    out = np.asarray(cv2.LUT(tall, table[None]), np.uint8).reshape(clip.shape)
     flipped = bool(rng.random() < 0.5)
     return (out[:, :, ::-1] if flipped else out), flipped
 

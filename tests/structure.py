@@ -16,7 +16,18 @@ PACKAGES = ("grammar", "runtime", "ranker", "vdsl")
 #: Files that are no modules.
 OTHERS = {
     "grammar/vds.lark": "The grammar.",
-    "vdsl/emit/index.html.j2": "The page's template.",
+    "vdsl/emit/templates/page.html.j2": "The page: its head, its parts in order, the viewing room.",
+    "vdsl/emit/templates/shot.html.j2": "One panel of the board.",
+    "vdsl/emit/templates/library.html.j2": "Served: what there is to write with.",
+    "vdsl/emit/templates/stage.html.j2": "Served: the scenes as they are placed.",
+    "vdsl/emit/templates/base.css": "Colours, type and plain elements of every page.",
+    "vdsl/emit/templates/page.css": "How the page is laid out.",
+    "vdsl/emit/templates/print.css": "The page on paper.",
+    "vdsl/emit/templates/theme.js": "Light and dark.",
+    "vdsl/emit/templates/viewer.js": "The viewing room: a take frame by frame.",
+    "vdsl/emit/templates/board.js": "The board: playing, takes, finding, keys.",
+    "vdsl/emit/templates/live.js": "Served: choosing, and going along with what is compiled.",
+    "vdsl/emit/templates/library.js": "Served: finding in the library, drawing on demand.",
 }
 
 
@@ -39,7 +50,7 @@ def lists() -> str:
                 found.setdefault(folder, {})[path.name] = about(path)
     for name, words in OTHERS.items():
         folder, _, file = name.rpartition("/")
-        found[folder][file] = words
+        found.setdefault(folder, {})[file] = words
     parts = []
     for folder, files in sorted(
         found.items(), key=lambda row: (PACKAGES.index(row[0].split("/")[0]), row[0])

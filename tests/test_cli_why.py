@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+import shutil
 from pathlib import Path
 
 import pytest
@@ -120,6 +121,28 @@ def test_takes_and_builds_that_are_not_there_are_told(folder: Path, tmp_path: Pa
     assert (result.exit_code, "is damaged" in result.output) == (2, True)
     assert vdsc("why", story, "1", "--fresh", "-b", tmp_path).exit_code == 2
     assert vdsc("why", tmp_path / "none.vds", "1").exit_code == 2
+
+
+def test_a_take_that_was_put_first_is_not_said_to_rank_first(folder: Path, tmp_path: Path) -> None:
+    """Of a build with a choice or an edit, the first take's place by its score is told, and why."""
+    built = tmp_path / "out"
+    shutil.copytree(folder / "out", built)
+    document = json.loads((built / "storyboard.json").read_text())
+    takes = document["shots"][0]["takes"]
+    takes[0]["score"], takes[0]["chosen"] = takes[1]["score"] - 1e-6, True
+    (built / "storyboard.json").write_text(json.dumps(document))
+    said = vdsc("why", folder / "story.vds", "1", "-b", built).stdout
+    assert "take 1 stands first because it was chosen" in said
+    assert re.search(r"^take 1 \(0\.\d+\) ranks second: ", said, re.MULTILINE)
+    assert re.search(r"^take 2 \(0\.\d+\) ranks first: ", said, re.MULTILINE)
+    takes[0]["chosen"] = False
+    text = "shot 1: take 2 instead of 1 (score 0.71 instead of 0.72) keeps the line"
+    document["trades"] = [{"shot": document["shots"][0]["id"], "text": text}]
+    (built / "storyboard.json").write_text(json.dumps(document))
+    told = explained(folder / "story.vds", "1", "-b", built)
+    assert told["placed"] == f"take 1 stands first for the sake of the cuts: {text}"
+    assert told["takes"][1]["sentence"].startswith("ranks first")
+    assert explained(folder / "story.vds", "2", "-b", built)["placed"] == ""
 
 
 def test_the_space_of_a_shot_is_shown(folder: Path) -> None:

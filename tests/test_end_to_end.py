@@ -129,7 +129,7 @@ def test_the_discriminator_judges_the_same_way_twice(built):
     assert len(set(scores)) == 4
     assert all(0.0 < score < 1.0 for score in scores)
     report = json.loads((folder / "judged" / "report.json").read_text())
-    assert next(s["count"] for s in report["stages"] if s["name"] == "rank") == 12
+    assert next(s["count"] for s in report["stages"] if s["name"] == "rank") == 12 * 8  # frames
 
 
 def test_the_command_line_wins_over_the_header(built):
@@ -182,7 +182,7 @@ def test_a_failing_run_leaves_the_last_good_build(built, monkeypatch):
     def full(*_: object, **__: object) -> None:
         raise OSError(errno.ENOSPC, "No space left on device", "take-2.mp4")
 
-    monkeypatch.setattr("vdsl.pipeline.compile.write_take", full)
+    monkeypatch.setattr("vdsl.pipeline.shooting.write_take", full)
     done = run("compile", folder / "story.vds", "-o", folder / "out", "--rank", "geometry", "--seed", "9")
     assert done.exit_code == 3
     assert "disk is full" in done.output
@@ -197,7 +197,7 @@ def test_an_interrupted_run_ends_with_130_and_leaves_the_last_good_build(built, 
     def interrupt(*_: object, **__: object) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("vdsl.pipeline.compile.write_take", interrupt)
+    monkeypatch.setattr("vdsl.pipeline.shooting.write_take", interrupt)
     done = run("compile", folder / "story.vds", "-o", folder / "out", "--rank", "geometry", "--seed", "9")
     assert done.exit_code == 130
     assert _documents(folder / "out") == before

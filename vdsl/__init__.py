@@ -38,18 +38,26 @@ def compile(
     weights: Path | None = None,
     burn_in: bool = False,
     edit: bool = False,
+    guides: str = "",
+    arrows: bool = True,
 ) -> Result:
     """Compile a script into a folder of videos (default ``build/<name>``).
 
     settings: what wins over the script's header lines; device: auto, cpu, cuda or vulkan; rank:
-    discriminator or geometry; edit: choose takes for the sequence
-    Raises :class:`ScriptError`, OSError or :class:`ranker.RankerError`.
+    discriminator or geometry; edit: choose takes for the sequence; guides: what is drawn over every frame,
+    such as ``safe,thirds,2.39`` (docs/overlays.md); arrows: show on the contact sheet what moves
+    Raises ValueError for guides that are none, :class:`ScriptError`, OSError or :class:`ranker.RankerError`.
     """
     # Only now: parsing and checking must not wait for numpy, torch and taichi.
+    from .emit.guides import guides_of
     from .pipeline.compile import compile_file
     from .pipeline.options import Options
 
-    return compile_file(path, out, Options(settings or Settings(), device, rank, weights, burn_in, edit))
+    over = guides_of(guides)
+    options = Options(
+        settings or Settings(), device, rank, weights, burn_in, edit, guides=over, arrows=arrows
+    )
+    return compile_file(path, out, options)
 
 
 __all__ = [

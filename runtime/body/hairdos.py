@@ -11,7 +11,7 @@ from .head import Head
 from .pieces import Piece, shade
 from .sheets import merged, strand
 from .strands import bumps, cap, curtain, face_window, grooves, hair_piece, hairline, mirrored_half
-from .surface import Patch
+from .surface import Patch, split
 
 
 def pixie(head: Head) -> list[Piece]:
@@ -138,23 +138,22 @@ def curls(head: Head, shape: Field, cut: Field, depth: float, wave: float, faces
     whole = hair_piece(
         head, bumps(shape, depth, wave), (-0.82, -0.72, -0.1), (0.72, 0.72, 1.45), cut, faces, symmetric=False
     )
-    middle = head.units(whole.patch.vertices[whole.patch.faces].mean(1))
-    valley = shape(middle) < -0.10 * depth
+    valley, hill = split(whole.patch, lambda p: shape(head.units(p)) + 0.10 * depth)
     colour = head.figure.spec.hair_color
     light = 0.3 * colour[0] + 0.6 * colour[1] + 0.1 * colour[2]
     other = shade(colour, 0.84) if light > 0.25 else shade(colour, 1.07)
     if light <= 0.25:
-        valley = ~valley
+        valley, hill = hill, valley
     return [
         Piece(
-            Patch(whole.patch.vertices, whole.patch.faces[keep]),
+            patch,
             look,
             "hair",
             whole.solid,
             whole.rule,
             "whole",
         )
-        for keep, look in ((~valley, colour), (valley, other))
+        for patch, look in ((hill, colour), (valley, other))
     ]
 
 

@@ -271,12 +271,16 @@ class Scene:
                 matrix[:3, 3] = hold.place
         return matrix
 
+    def _frame(self, time: float) -> int:
+        """The frame at a time; what began in a shot before, at the first."""
+        return min(max(int(time * self.fps), 0), len(self.t) - 1)
+
     def _other(self, performer: Performer, window: Window, time: float) -> tuple[Figure, bool] | None:
         """The other person's figure, and whether the two face each other."""
         other = self.performers.get(window.partner or "")
         if other is None:
             return None
-        i = min(int(time * self.fps), len(self.t) - 1)
+        i = self._frame(time)
         return other.figure, bool(np.cos(other.yaw[i] - performer.yaw[i]) < 0)
 
     def _meet(self, performer: Performer, window: Window, time: float, clasped: bool = False) -> Array | None:
@@ -284,7 +288,7 @@ class Scene:
         other = self.performers.get(window.partner or "")
         if other is None:
             return None
-        i = min(int(time * self.fps), len(self.t) - 1)
+        i = self._frame(time)
         mine, theirs = performer.root[i], other.root[i]
         gap = theirs - mine
         middle = 0.5 * (mine + theirs) - 0.045 * gap / max(float(np.linalg.norm(gap)), 1e-6)

@@ -10,6 +10,7 @@ import contextlib
 import io
 import os
 import tempfile
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -17,6 +18,9 @@ import numpy as np
 from numpy.typing import DTypeLike, NDArray
 from platformdirs import user_cache_path
 
+from .quick import quicken
+
+ALIGNMENT = 64  # bytes
 DEVICES = ("auto", "cpu", "cuda", "vulkan")
 
 
@@ -37,9 +41,9 @@ class Backend:
         return self.name == "cpu"
 
     def buffer(self, shape: tuple[int, ...], dtype: DTypeLike) -> Any:
-        """An uninitialised array that kernels can use: numpy on the host, else a Taichi ndarray."""
+        """An array that kernels can use: numpy zeros on the host (:func:`aligned`), else a Taichi ndarray."""
         if self.on_host:
-            return np.zeros(shape, dtype)
+            return aligned(shape, dtype)
         import taichi as ti
 
         kinds = {"f4": ti.f32, "i4": ti.i32, "u1": ti.u8, "u2": ti.u16, "u4": ti.u32, "u8": ti.u64}
@@ -55,6 +59,35 @@ class Backend:
         out = self.buffer(array.shape, array.dtype)
         out.from_numpy(array)
         return out
+
+
+def aligned(shape: tuple[int, ...], dtype: DTypeLike) -> NDArray[Any]:
+    """Zeros that begin on a line of the cache, as kernels under :func:`vectorised` need them."""
+    size = int(np.prod(shape)) * np.dtype(dtype).itemsize
+    memory = np.zeros(size + ALIGNMENT, np.uint8)
+    start = -memory.ctypes.data % ALIGNMENT
+    return memory[start : start + size].view(dtype).reshape(shape)
+
+
+def vectorised(kernel: Callable[..., None]) -> Callable[..., None]:
+    """A kernel that is compiled with vectors kept whole, for one vector instruction each.
+
+    Only for the host, and for kernels that keep to plain arithmetic, comparisons and selections of vectors:
+    at others the compiler gives up, and the process with it.
+    """
+
+    def call(*arguments: Any) -> None:
+        import taichi as ti
+
+        config = ti.lang.impl.current_cfg()
+        before = config.real_matrix_scalarize
+        config.real_matrix_scalarize = False
+        try:
+            kernel(*arguments)
+        finally:
+            config.real_matrix_scalarize = before
+
+    return call
 
 
 _started: list[Backend] = []
@@ -75,6 +108,7 @@ def start(device: str = "auto") -> Backend:
     os.environ.setdefault("TI_LOG_LEVEL", "error")
     import taichi as ti
 
+    quicken()
     threads = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
     cache = _kernel_cache()
     wanted = {"auto": ("cuda", "cpu")}.get(device, (device,))
@@ -98,9 +132,22 @@ def start(device: str = "auto") -> Backend:
                 continue
             raise DeviceError(f"no usable {name} device here ({error}); try --device cpu") from error
         if ti.lang.impl.current_cfg().arch == arch or name == "cpu":
+            if name == "vulkan":
+                _check_driver()
             _started.append(Backend(name, threads))
             return _started[0]
     raise DeviceError(f"no usable {device} device here; try --device cpu")
+
+
+def _check_driver() -> None:
+    """Raise DeviceError where the Vulkan driver would leave holes in the picture."""
+    from .kernels.probe import sound
+
+    if not sound():
+        raise DeviceError(
+            "the Vulkan driver here gets atomic operations in loops wrong (as Mesa's lavapipe 22.3 does); "
+            "update it, or try --device cpu"
+        )
 
 
 def _kernel_cache() -> str | None:

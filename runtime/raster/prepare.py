@@ -16,7 +16,9 @@ from scipy.sparse.csgraph import connected_components
 
 from ..mesh import MATERIALS, Mesh
 from .bake import Volume, key_casters, occlusion_volume, stage_bounds
+from .detail import COUNT, Levels, with_levels
 from .film import to_linear
+from .looks import surface_colors
 from .types import LOOSE, ONE_SIDED, RenderScene, Style
 
 CLUSTER = 64  # triangles
@@ -24,6 +26,7 @@ WELD = 1e-5  # metres
 FLAT = 1  # surface flag: the triangle's three normals are one
 MOVES = 2  # surface flag: skinned
 CLOSED = 4  # surface flag: its back is never seen
+CASTING = 3  # level of bodies that throws shadows
 SHIFT = 8  # flags sit above the material in info
 
 
@@ -33,7 +36,8 @@ class Prepared:
 
     vertices, normals: float32 [V, 3]; rest, rest_normals: float32 [K, 3]
     faces: int32 [F, 3] into both one after the other; color: float32 [F, 3] linear
-    info: int32 [F, 3]: surface index, material | flags << SHIFT, wall or -1
+    info: int32 [F, 3]: surface index, material | flags << SHIFT, wall or -1; people and the levels of
+    detailed bodies are walls too, after those of the set
     clusters: int32 [C, 4]: first triangle, count, cull, wall; moving_first: index of the first skinned one
     sphere: float32 [C, 4], bounds of the static ones
     surface_object: int32 [S]: object id of each surface, a surface being one part of one object
@@ -41,7 +45,7 @@ class Prepared:
     moving_surface: index of the first skinned surface; static_faces: number of static triangles
     set_casters, casters: int32, triangles that throw shadows, static and skinned; area: float32 [K], square
     metres a skinned vertex stands for; volume: occlusion of the set; stage: corners of
-    what stands in it; levels: heights of its floors
+    what stands in it; levels: heights of its floors; detail: the levels of bodies
     """
 
     vertices: NDArray[np.float32]
@@ -64,6 +68,7 @@ class Prepared:
     volume: Volume
     stage: tuple[NDArray[np.float64], NDArray[np.float64]]
     levels: tuple[float, ...]
+    detail: Levels
 
 
 def check(scene: RenderScene) -> None:
@@ -140,10 +145,13 @@ def _clusters(
     return order, np.array(rows, np.int32)
 
 
-def _spheres(mesh: Mesh, clusters: NDArray[np.int32]) -> NDArray[np.float32]:
+def spheres(
+    vertices: NDArray[np.float32], faces: NDArray[np.int32], clusters: NDArray[np.int32]
+) -> NDArray[np.float32]:
+    """Bounds of clusters, float32 [C, 4]: middle and radius."""
     out = np.zeros((len(clusters), 4), np.float32)
     for i, (begin, count, _, _) in enumerate(clusters):
-        points = mesh.vertices[mesh.faces[begin : begin + count]].reshape(-1, 3)
+        points = vertices[faces[begin : begin + count]].reshape(-1, 3)
         low, high = points.min(axis=0), points.max(axis=0)
         out[i, :3] = (low + high) / 2
         out[i, 3] = np.linalg.norm(high - low) / 2 * 1.0001 + 1e-6
@@ -176,13 +184,19 @@ def prepare(scene: RenderScene, style: Style) -> Prepared:
     one_sided = scene.static_wall == ONE_SIDED
     static_wall = np.where(one_sided, np.int32(-1), scene.static_wall)
     static_cull = closed_faces(scene.static, scene.static_object) | one_sided
+    touching = _touching_area(scene)
     moving_cull = closed_faces(scene.skinned, scene.skinned_object)
+    detail = with_levels(scene)
+    scene, moving_cull = detail.scene, moving_cull[detail.source]
     order, clusters = _clusters(scene.static, scene.static_object, static_wall, static_cull)
     static = _ordered(scene.static, order)
-    fitting = np.full(len(scene.skinned.faces), LOOSE, np.int32) if scene.fitting is None else scene.fitting
+    fitting = _fitting(scene)
     people = np.where(fitting < LOOSE, scene.wall_count + LOOSE - 1 - fitting, -1)
-    own_wall = np.maximum(fitting, people).astype(np.int32)
-    own_wall = np.maximum(own_wall, -1)
+    own_wall = np.maximum(np.maximum(fitting, people), -1)
+    after = scene.wall_count + max(LOOSE - int(fitting.min(initial=LOOSE)), 0)
+    level_wall = after + detail.body * COUNT + detail.level
+    own_wall = np.where(detail.body >= 0, level_wall, own_wall).astype(np.int32)
+    casting = (detail.body < 0) | (detail.level == CASTING)
     moving_order, moving_clusters = _clusters(scene.skinned, scene.skinned_object, own_wall, moving_cull)
     fitting, own_wall = fitting[moving_order], own_wall[moving_order]
     skinned = _ordered(scene.skinned, moving_order)
@@ -207,6 +221,7 @@ def prepare(scene: RenderScene, style: Style) -> Prepared:
     bright = to_linear(skinned.colors)
     calm = (fitting > LOOSE) & ~clear_part
     color = np.concatenate([quiet, np.where(calm[:, None], quieted(bright, style.quiet), bright)])
+    color = surface_colors(color, moves == 1, style)
     set_casters = key_casters(static, static_wall[order], scene.static_object[order])
     return Prepared(
         vertices=static.vertices,
@@ -218,31 +233,37 @@ def prepare(scene: RenderScene, style: Style) -> Prepared:
         info=np.stack([surface.reshape(-1), materials | (flags << SHIFT), wall], axis=1).astype(np.int32),
         clusters=np.concatenate([clusters, moving_clusters]).astype(np.int32),
         moving_first=len(clusters),
-        sphere=_spheres(static, clusters),
+        sphere=spheres(static.vertices, static.faces, clusters),
         surface_object=surfaces[:, 1].astype(np.int32),
         one_color=_one_color(color, surface.reshape(-1), len(surfaces)),
         moving_surface=int((surfaces[:, 0] == 0).sum()),
         static_faces=len(order),
         set_casters=set_casters,
-        casters=(_casters(skinned, fitting) + len(order)).astype(np.int32),
-        area=_touching_area(skinned, fitting),
+        casters=(_casters(skinned, fitting, casting[moving_order]) + len(order)).astype(np.int32),
+        area=touching,
         volume=occlusion_volume(static, set_casters),
         stage=stage_bounds(static, set_casters),
         levels=scene.levels,
+        detail=detail,
     )
 
 
-def _casters(skinned: Mesh, fitting: NDArray[np.int32]) -> NDArray[np.int32]:
-    """Skinned faces that throw shadows: all but those of doors and windows, whose walls throw none."""
+def _fitting(scene: RenderScene) -> NDArray[np.int32]:
+    return np.full(len(scene.skinned.faces), LOOSE, np.int32) if scene.fitting is None else scene.fitting
+
+
+def _casters(skinned: Mesh, fitting: NDArray[np.int32], casting: NDArray[np.bool_]) -> NDArray[np.int32]:
+    """Skinned faces that throw shadows: none of doors and windows, whose walls throw none, and of each body
+    one level, the same in all views."""
     nobody = np.full(len(skinned.faces), -1, np.int32)
     found = key_casters(skinned, nobody, nobody)
-    return found[fitting[found] < 0]
+    return found[(fitting[found] < 0) & casting[found]]
 
 
-def _touching_area(skinned: Mesh, fitting: NDArray[np.int32]) -> NDArray[np.float32]:
+def _touching_area(scene: RenderScene) -> NDArray[np.float32]:
     """Surface of each skinned vertex that darkens the floor under it: nothing of what belongs to the set."""
-    area = _vertex_area(skinned)
-    area[skinned.faces[fitting > LOOSE].reshape(-1)] = 0.0
+    area = _vertex_area(scene.skinned)
+    area[scene.skinned.faces[_fitting(scene) > LOOSE].reshape(-1)] = 0.0
     return area
 
 

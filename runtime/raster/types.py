@@ -15,6 +15,8 @@ from numpy.typing import NDArray
 from ..mesh import Mesh
 from ..world import Light
 
+#: Rises whenever the same scene and views may give other pixels than before; kept results go by it.
+LOOK_VERSION: int = 13
 #: In ``fitting``: a person, or a thing that is carried about.
 LOOSE = -2
 #: In ``static_wall``: a face seen from its front only, such as a ceiling.
@@ -26,7 +28,9 @@ class Style:
     """Frozen look of the pictures; kernels are compiled per style.
 
     outline: ink lines on silhouettes, creases and part borders; tones: number of light steps
-    (0 for smooth); quiet: 0..1, how far static geometry is drawn towards pale tints
+    (0 for smooth); quiet: 0..1, how far static geometry is drawn towards pale tints; plain: smooth shading
+    alone, without shadows, lines, patterns, haze, smoothing or lens: the other fields but quiet say nothing;
+    clay: one neutral material under a wide sky, deep in corners; hatch: strokes of black on white paper
     """
 
     name: str = "board"
@@ -35,13 +39,17 @@ class Style:
     quiet: float = 0.45
     shadows: bool = True
     occlusion: bool = True
+    plain: bool = False
+    clay: bool = False
+    hatch: bool = False
 
 
 #: The looks a storyboard can ask for by name.
 STYLES = {
     "board": Style(),
-    "clay": Style("clay", outline=False, tones=0, quiet=0.3),
-    "ink": Style("ink", tones=2, quiet=0.95),
+    "clay": Style("clay", outline=False, tones=0, quiet=0.0, clay=True),
+    "ink": Style("ink", tones=0, quiet=0.9, hatch=True),
+    "plain": Style("plain", outline=False, tones=0, quiet=0.0, shadows=False, occlusion=False, plain=True),
 }
 
 
@@ -81,27 +89,35 @@ class Camera:
     axes: float32 [N, 3, 3], rows are the camera's right, up and forward in the world
     focal: float32 [N], mm
     sensor: (width, height) of the sensor in mm; the picture fills it exactly
+    focus: float32 [N], metres along the optical axis to what is sharp; aperture: f-number. Without a focus,
+        or with an aperture of 0, everything is sharp, and costs nothing
     """
 
     position: NDArray[np.float32]
     axes: NDArray[np.float32]
     focal: NDArray[np.float32]
     sensor: tuple[float, float]
+    focus: NDArray[np.float32] | None = None
+    aperture: float = 0.0
 
 
 @dataclass(frozen=True, eq=False)
 class Views:
     """N views: moment int32 [N] indexes the palettes; hidden bool [N, W] or [N, W + people], what
-    is not drawn in the view: walls, then people."""
+    is not drawn in the view: walls, then people; detail int32 [N, B], the level that each detailed body is
+    drawn by (``Renderer.levels``), None: what each view by itself would take."""
 
     camera: Camera
     moment: NDArray[np.int32]
     hidden: NDArray[np.bool_]
+    detail: NDArray[np.int32] | None = None
 
 
 @dataclass(frozen=True, eq=False)
 class Frames:
-    """color: uint8 [N, H, W, 3] sRGB; ids: int32 [N, H, W] object id or -1, None unless asked for."""
+    """color: uint8 [N, H, W, 3] sRGB; ids: int32 [N, H, W] object id or -1, None unless asked for
+    depth: float32 [N, H, W], metres along the optical axis, inf where nothing is; None unless asked for"""
 
     color: NDArray[np.uint8]
     ids: NDArray[np.int32] | None
+    depth: NDArray[np.float32] | None = None

@@ -29,7 +29,8 @@ def test_what_is_drawn_lies_in_the_subspace(movement: str) -> None:
             assert set(values) <= set(variable.grid)
             assert len(set(values)) == len(variable.grid)
         else:
-            assert variable.low - 1e-9 <= min(values) <= max(values) <= variable.high + 1e-9
+            numbers = [float(value) for value in values]
+            assert variable.low - 1e-9 <= min(numbers) <= max(numbers) <= variable.high + 1e-9
     if "turn" in space:
         turns = np.degrees(np.abs([float(p["turn"]) for p in params]))
         assert space["turn"].low - 1e-9 <= turns.min()

@@ -9,8 +9,8 @@ from vdsl.cinema.score import WEIGHTS, geometry_score
 from vdsl.cinema.telling import NOTES, advantages, compared, faults, is_good, number, penalties, terms
 
 BEST = dict.fromkeys(MEASURES, 0.0) | {
-    "visibility": 1.0, "head_visible": 1.0, "in_frame": 1.0, "headroom": 0.1, "lead_room": 0.2,
-    "interest": 1.0, "view": 1.0, "face": 0.9, "clearance": 1.0,
+    "visibility": 1.0, "ends_visible": 1.0, "head_visible": 1.0, "in_frame": 1.0, "headroom": 0.1,
+    "lead_room": 0.2, "interest": 1.0, "view": 1.0, "face": 0.9, "clearance": 1.0,
 }  # fmt: skip
 
 

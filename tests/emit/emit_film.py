@@ -9,7 +9,7 @@ import numpy as np
 
 from vdsl.cinema.continuity import Finding
 from vdsl.cinema.track import CameraTrack
-from vdsl.emit.types import CUT, Build, BuiltShot, BuiltTake, CutFinding, Subject, Trade
+from vdsl.emit.types import CUT, Build, BuiltShot, BuiltTake, CutFinding, Subject, Trade, Walk
 from vdsl.emit.video import write_take
 from vdsl.lang.ir import Beat, Character, Scene, Shot, Storyboard, StoryLine, Target, Transition
 from vdsl.lang.source import Source, Span
@@ -59,9 +59,13 @@ def take(folder: Path, name: str, rank: int, frames: int, shade: int) -> BuiltTa
     )  # fmt: skip
     subject = Subject("anna", 1.68, np.zeros((frames, 3)))
     media = write_take(folder, name, rank, pictures(frames, shade), frames, FPS)
-    return BuiltTake(
-        rank, 0.9 - rank / 10, camera, "calm", subject, media, Achieved("push", "medium", "eye-level"), 1.5
+    way = np.stack([np.linspace(0, 2, frames), np.full(frames, 0.5), np.zeros(frames)], -1)
+    people = (
+        Walk("anna", way, np.zeros(frames), way + np.array([0, 0, 1.5])),
+        Walk("ben", way[:1].repeat(frames, 0) + 1, np.ones(frames), way[:1].repeat(frames, 0) + 1.5),
     )
+    achieved = Achieved("push", "medium", "eye-level")
+    return BuiltTake(rank, 0.9 - rank / 10, camera, "calm", subject, media, achieved, 1.5, people=people)
 
 
 def built(

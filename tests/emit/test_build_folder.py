@@ -53,6 +53,7 @@ def test_failure_of_the_swap_puts_the_old_build_back(tmp_path: Path, monkeypatch
             raise OSError(28, "No space left on device")
         rename(a, b)
 
+    monkeypatch.setattr(folder_module, "exchange", lambda one, two: False)
     monkeypatch.setattr(folder_module.os, "rename", failing)
     with pytest.raises(BuildFolderError, match="No space left") as caught:
         put_build(target, "two")

@@ -134,6 +134,7 @@ def fields(value: Any, prefix: str = "") -> set[str]:
     """Paths of all fields, ``shots[].takes[].rank``; values of free-form maps are not fields."""
     free = (
         "params",
+        "arguments",
         "measures",
         "numbers",
         "rejected",

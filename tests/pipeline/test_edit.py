@@ -128,7 +128,7 @@ def test_the_chosen_take_comes_first_and_no_more_are_kept_than_were_asked() -> N
         _slot(1, (0.9, 60, 0)),
         replace(_slot(2, (0.8, -60, 90), (0.7, -50, 90), (0.6, 60, 90)), proposals=(7, 3, 5)),
     ]
-    result = edited(slots, {}, {"s1": [0], "s2": [7, 3], "s3": []})
+    result = edited(slots, {"s1": [0], "s2": [7, 3], "s3": []})
     assert result.takes == {"s1": [0], "s2": [5, 7], "s3": []}
 
 
@@ -255,7 +255,22 @@ def test_checking_reads_the_build_where_it_is_of_this_script(
     script.write_text(STORY)
     assert other.exit_code == 0
     assert "77°" not in other.stderr
-    assert "proposals a shot, by their geometry" in other.stdout
+    assert "proposals a shot, by their geometry (the build in build/story is of another text)" in other.stdout
+
+
+def test_checking_reads_the_build_that_is_named(folder: Path, tmp_path: Path) -> None:
+    """What is told of a build by name is what was compiled, with the degrees, or why it cannot be told."""
+    script, built = folder / "story.vds", json.loads((folder / "plain" / "storyboard.json").read_text())
+    told = CliRunner().invoke(app, ["check", str(script), "--build", str(folder / "plain")])
+    assert told.exit_code == 0
+    assert built["continuity"]
+    assert all(cut["text"] in told.stderr for cut in built["continuity"])
+    assert f"the takes in {folder / 'plain'}; {len(built['continuity'])} found" in told.stdout
+    none = CliRunner().invoke(app, ["check", str(script), "--build", str(tmp_path)])
+    assert (none.exit_code, "there is no build at" in none.stderr) == (2, True)
+    (tmp_path / "other.vds").write_text(STORY + "(anna nod)\n")
+    other = CliRunner().invoke(app, ["check", str(tmp_path / "other.vds"), "--build", str(folder / "plain")])
+    assert (other.exit_code, "is of another text" in other.stderr) == (2, True)
 
 
 def test_every_rule_has_its_text() -> None:

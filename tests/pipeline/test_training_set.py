@@ -2,21 +2,27 @@
 
 from __future__ import annotations
 
-import json
 import random
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from ranker.data import Dataset
+from ranker.errors import RankerError
 from vdsl.cinema.track import CameraTrack, look_at_rotation
 from vdsl.lang import Report, Source
+from vdsl.lang.ir import ALL_ANGLES, FURTHER_MOVEMENTS, MOVEMENTS, SIZES
 from vdsl.library import Catalog
+from vdsl.pipeline.acts import stage_acts
+from vdsl.pipeline.casting import Troupe, split_of_story
 from vdsl.pipeline.dataset import generate
-from vdsl.pipeline.perturb import perturbed
+from vdsl.pipeline.labels import WORDS, classes
+from vdsl.pipeline.perturb import mistyped, perturbed
 from vdsl.pipeline.script import check_source
-from vdsl.pipeline.stories import places, random_story
+from vdsl.pipeline.stories import places, random_story, split_of
+from vdsl.propose.story import tell
 
 
 def _track(frames: int = 40) -> CameraTrack:
@@ -65,18 +71,91 @@ def test_random_stories_pass_the_same_check_as_a_writers():
     assert len(seen) >= 15, seen
 
 
-def test_a_training_set_is_half_good_and_goes_on_where_it_stopped(tmp_path: Path):
-    first = generate(tmp_path, 16, seed=4, device="cpu")
-    marker = json.loads((tmp_path / "stories.json").read_text())
-    assert generate(tmp_path, 16, seed=4, device="cpu") == first
-    assert json.loads((tmp_path / "stories.json").read_text()) == marker
-    more = generate(tmp_path, first + 1, seed=4, device="cpu")
-    data = Dataset(tmp_path)
-    assert len(data.labels) == more > first
+def test_no_set_and_nobody_is_on_both_sides() -> None:
+    catalog = Catalog(Report())
+    for kind in ("set", "cast"):
+        names = sorted(catalog.names(kind))
+        train, test = split_of(names)
+        assert set(train) | set(test) == set(names)
+        assert not set(train) & set(test)
+        assert 0.1 < len(test) / len(names) < 0.3
+        assert split_of(list(reversed(names))) == (train, test)
+    troupe = Troupe(seed=3)
+    sides: dict[str, list[set[str]]] = {"train": [set(), set()], "test": [set(), set()]}
+    for number in range(48):
+        side = split_of_story(number)
+        text, place = troupe.text(number, side)
+        storyboard = check_source(Source("<story>", text)).storyboard
+        sides[side][0].add(place.set)
+        sides[side][1] |= {c.cast for c in storyboard.characters}
+    for seen in zip(sides["train"], sides["test"], strict=True):
+        assert all(seen)
+        assert not seen[0] & seen[1]
+
+
+def test_stories_use_the_whole_vocabulary_of_the_camera() -> None:
+    troupe = Troupe(seed=1)
+    shots = [
+        shot
+        for number in range(40)
+        for line in check_source(Source("<s>", troupe.text(number, "train")[0])).storyboard.lines
+        for shot in line.shots
+    ]
+    assert {s for shot in shots for s in shot.scales} == set(SIZES)
+    assert {a for shot in shots for a in shot.angles} == set(ALL_ANGLES)
+    movements = {m for shot in shots for m in shot.movements}
+    assert movements >= set(MOVEMENTS) | (set(FURTHER_MOVEMENTS) - {"rack-focus"})
+    assert any("+" in m for m in movements)
+    assert {shot.view for shot in shots} >= {"", "ots", "two-shot"}
+
+
+def test_classes_are_what_a_person_can_tell() -> None:
+    words = [*MOVEMENTS, *FURTHER_MOVEMENTS]
+    found = [classes(m, s, a) for m in words for s in SIZES for a in ALL_ANGLES]
+    assert {f[0] for f in found} == set(WORDS.movements)
+    assert {f[1] for f in found} == set(WORDS.scales)
+    assert {f[2] for f in found} - {None} == set(WORDS.angles)
+    assert classes("push+pan-left", "cowboy", "knee-level") == (None, "medium", None)
+    assert classes("push+rack-focus", "medium", "overhead") == ("push/pull", "medium", "overhead")
+
+
+def test_what_shows_no_type_is_another_take() -> None:
+    track = _track()
+    for seed in range(30):
+        spoilt = mistyped(track, np.random.default_rng(seed))
+        assert spoilt.position.shape == (40, 3)
+        off = [
+            np.abs(getattr(spoilt, k) - getattr(track, k)).max() for k in ("position", "rotation", "focal")
+        ]
+        assert max(off) > 0.05
+
+
+def test_what_two_did_together_may_have_begun_before_a_shot() -> None:
+    text = """storyboard "dance"
+character anna = soldier
+character ben = dancer
+scene here = farmyard.yard at day
+(anna dance-with ben)
+(anna stagger)
+"""
+    for act in stage_acts(check_source(Source("<story>", text))):  # once an IndexError
+        assert tell(act.state, act.line, act.filming).proposals
+
+
+def test_a_training_set_is_half_good_and_goes_on_where_it_stopped(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("vdsl.pipeline.dataset.Troupe", partial(Troupe, lines=1, cameras=2))
+    at_once = generate(tmp_path / "a", 1, seed=4, device="cpu", size=64)
+    assert generate(tmp_path / "a", 1, seed=4, device="cpu", size=64) == at_once
+    data = Dataset(tmp_path / "a")
+    assert len(data.labels) == at_once
     good = [label for label in data.labels if label.professional]
-    assert len(good) * 2 == more
-    assert all(label.strength == 0 and label.movement for label in good)
-    assert all(label.strength > 0 for label in data.labels if not label.professional)
-    frames = data.clip(0, range(8), 224)
-    assert frames.shape == (8, 224, 224, 3)
+    assert len(good) * 2 == at_once
+    assert all(label.strength == 0 and label.about["kind"] == "designer" for label in good)
+    assert all(label.strength > 0 and label.split for label in data.labels if not label.professional)
+    frames = data.clip(0, range(8), 64)
+    assert frames.shape == (8, 64, 64, 3)
     assert frames.std() > 10
+    with pytest.raises(RankerError, match="another kind"):
+        generate(tmp_path / "a", at_once + 1, seed=5, device="cpu", size=64)

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from filmset import shot, skeleton, still_story, thing, world
+from filmset import shot, skeleton, standing, still_story, story, thing, world
 
 from vdsl.lang.ir import ALL_ANGLES, SIZES, Shot
 from vdsl.propose.advice import advise
@@ -77,6 +77,28 @@ def test_where_nothing_helps_nothing_is_named() -> None:
     block = ((0.0, 0.0, 15.0, 30.0, 30.0, 15.0, 0.0),)
     filming = Filming(world(boxes=block), {"anna": BODY}, 24.0, 0)
     assert advise(shot(scale="full"), still_story(BODY), filming).instead == ()
+
+
+def test_what_helps_in_another_way_of_playing_is_named() -> None:
+    """She stands in a block where nothing helps; in the other way the line may be played, outside of it."""
+    block = ((0.0, 0.0, 15.0, 9.0, 9.0, 15.0, 0.0),)
+    ground = world(boxes=block, floors=((-60.0, -60.0, 60.0, 60.0),))
+    filming = Filming(ground, {"anna": BODY}, 24.0, 0)
+    asked, inside = shot("push", "medium"), still_story(BODY)
+    away = standing(BODY, np.tile((30.0, 0.0, 0.0), (30, 1)), np.zeros(30), 0.0)
+    outside = story({"anna": away})
+    near = {"medium-close-up", "cowboy", "eye-level", "static"}
+    assert not near & set(advise(asked, inside, filming).instead)
+    assert near & set(advise(asked, inside, filming, (outside,)).instead)
+
+
+def test_two_words_are_named_where_none_alone_helps() -> None:
+    """A passage 0.9 m wide has no room for an arc, nor for a wide shot that stands still."""
+    filming, asked = corridor(0.9), shot("arc-left", "wide", lens=(80.0, 80.0))
+    assert advise(asked, still_story(BODY), filming).instead == ("static full",)
+    both = replace(asked, movements=("static",), scales=("full",))
+    grid = propose_cameras(both, [still_story(BODY)], filming)
+    assert len(grid.cameras) > grid.let_in
 
 
 def test_nudged_cameras_stand_beside_the_usual_ones_within_the_sizes_tolerance() -> None:

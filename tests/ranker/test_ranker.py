@@ -18,7 +18,7 @@ from ranker.errors import RankerError
 from ranker.evaluate import auc, evaluate
 from ranker.infer import Ranker, fold_batch_norm
 from ranker.model import ShotRanker, frame_times, normalised
-from ranker.train import learning_rate, mirror_words, train, varied
+from ranker.train import learning_rate, mirror_words, train, varied, watch
 from ranker.weights import load_card, load_model, save_weights
 
 
@@ -59,6 +59,17 @@ def test_forty_clips_are_learnt_by_heart(tmp_path: Path) -> None:
     card = load_card(tmp_path / "out" / "weights")
     assert train_from_json(card.training) == TINY
     assert card.data["clips"] == 40
+
+
+@pytest.mark.slow
+def test_two_hundred_clips_are_learnt_by_heart(tmp_path: Path) -> None:
+    write_clips(tmp_path / "data", 200)
+    config = replace(TINY, phases=(Phase(8, SIZE, 2, 2, 20),), watched=200)
+    train(tmp_path / "data", tmp_path / "out", config)
+    model, data = load_model(tmp_path / "out" / "weights")[0], Dataset(tmp_path / "data")
+    right = watch(model, data, np.arange(200), SIZE, config, torch.device("cpu"))
+    assert right == dict.fromkeys(("professional", "movement", "scale", "angle"), 1.0)
+    assert (tmp_path / "out" / "curves.svg").stat().st_size > 1000
 
 
 def test_training_goes_on_where_it_stopped(tmp_path: Path) -> None:
@@ -111,6 +122,20 @@ def test_quick_scores_are_near_the_exact_ones(weights: Path, frames: np.ndarray)
     got = Ranker.load(weights, "cpu").score(frames)
     np.testing.assert_allclose(got.feature, out.feature, atol=0.03 * float(out.feature.abs().max()))
     np.testing.assert_allclose(got.movement, out.movement.softmax(1), atol=0.05)
+
+
+def test_a_glance_is_what_some_of_the_frames_say(weights: Path, frames: np.ndarray) -> None:
+    model, card = load_model(weights)
+    ranker, at = Ranker.load(weights, "cpu"), (1, card.model.frames - 2)
+    with torch.no_grad():
+        some = normalised(torch.from_numpy(frames[:, at]))
+        out = model(some, frame_times(card.model)[list(at)].expand(7, -1))
+    got = ranker.glance(frames[:, at], at).margin
+    np.testing.assert_allclose(got, out.logit, atol=0.05 * float(out.logit.abs().max()) + 0.01)
+    np.testing.assert_array_equal(ranker.glance(frames[:, at], at).margin, got)
+    assert ranker.glance(frames[:0, at], at).margin.shape == (0,)
+    with pytest.raises(ValueError, match=r"expected uint8 \[P, 2"):
+        ranker.glance(frames, at)
 
 
 def test_folding_batch_norm_changes_nothing(weights: Path) -> None:

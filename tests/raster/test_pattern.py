@@ -23,22 +23,28 @@ def sampler() -> Any:
     start("cpu")
     import taichi as ti
 
-    from runtime.raster.kernels.pattern import broad_pattern, pattern
+    from runtime.raster.kernels.pattern import GRAINED, broad_pattern, noise_lattice, pattern
+
+    lattice = noise_lattice()
 
     @ti.kernel
     def fill(
         material: ti.i32,
         upright: ti.i32,
         blur: ti.f32,
+        lattice: ti.types.ndarray(dtype=ti.f32, ndim=1),
         points: ti.types.ndarray(dtype=ti.f32, ndim=2),
         out: ti.types.ndarray(dtype=ti.f32, ndim=1),
     ):
         for i in range(points.shape[0]):
             p = ti.Vector([points[i, 0], points[i, 1], points[i, 2]])
             n = ti.Vector([0.0, -1.0, 0.0]) if upright == 1 else ti.Vector([0.0, 0.0, 1.0])
-            out[i] = pattern(material, p, n, blur) * broad_pattern(material, p, n)
+            out[i] = broad_pattern(material, p, n, lattice)
+            for k in ti.static(GRAINED):
+                if material == k:
+                    out[i] = pattern(k, p, n, blur, lattice)
 
-    return fill
+    return lambda material, upright, blur, points, out: fill(material, upright, blur, lattice, points, out)
 
 
 def factors(material: str, upright: bool, blur: float, side: float = 8.0, count: int = 160) -> NDArray[Any]:

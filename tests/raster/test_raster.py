@@ -15,7 +15,7 @@ from twin import trace
 from runtime.raster.device import DeviceError
 from runtime.raster.prepare import closed_faces, prepare
 from runtime.raster.renderer import Renderer
-from runtime.raster.types import RenderScene, Style, Views
+from runtime.raster.types import STYLES, RenderScene, Style, Views
 
 PLAIN = Style("plain", outline=False, tones=0, quiet=0.45, shadows=False, occlusion=False)
 ODD = (47, 33)  # crosses every block size
@@ -159,7 +159,7 @@ def test_moments_move_what_is_skinned() -> None:
     assert columns[1] < columns[0] - 3
 
 
-@pytest.mark.parametrize("style", [PLAIN, Style()])
+@pytest.mark.parametrize("style", [PLAIN, Style(), STYLES["plain"]])
 def test_same_bytes_twice_and_one_by_one(style: Style) -> None:
     s = room()
     eyes = [(2.6, -1.8, 1.5), (0.5, 0.2, 1.6), (4.0, 0.4, 1.1)]
@@ -175,6 +175,15 @@ def test_same_bytes_twice_and_one_by_one(style: Style) -> None:
         alone = draw(s, one, (61, 45), style, palettes=palettes)
         np.testing.assert_array_equal(first.color[n], alone.color[0])
         np.testing.assert_array_equal(first.ids[n], alone.ids[0])
+
+
+def test_the_plain_look_is_smooth_shading_and_knows_what_it_sees() -> None:
+    """Colours of the flat faces of the set are those the light gives them, ids those of the full look."""
+    views = looking(EYES[:1], AIMS[:1])
+    plain, full = draw(room(), views, (64, 48), STYLES["plain"]), draw(room(), views, (64, 48))
+    np.testing.assert_array_equal(plain.ids, full.ids)
+    floor = plain.color[plain.ids == plain.ids[0, -1, 32]]
+    assert len(np.unique(floor.reshape(-1, 3), axis=0)) <= 6, "no shadows, no haze, no pattern"
 
 
 def test_long_batches_are_cut_without_a_trace(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -18,7 +18,7 @@ def ease(t: NDArray[np.float64] | float, lam: NDArray[np.float64] | float) -> ND
     rate = np.log(lam)
     even = np.abs(rate) < 1e-12
     safe = np.where(even, 1.0, rate)
-    return np.where(even, t, np.expm1(safe * t) / np.expm1(safe))
+    return np.asarray(np.where(even, t, np.expm1(safe * t) / np.expm1(safe)))
 
 
 def clock(frames: int) -> NDArray[np.float64]:

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from .easing import clock, ease
 from .framing import basis, direction
-from .moves import FLOOR_CLEARANCE, SIGN, Draw, family
+from .moves import FLOOR_CLEARANCE, SIGN, Draw, family, lift
 from .track import CameraTrack, look_at_rotation
 
 Array = NDArray[np.float64]
@@ -61,6 +61,7 @@ def combined(
     )
     shift = np.zeros((len(last), frames, 3))
     turn = np.zeros((len(last), frames, 3))  # of roll, pitch, yaw
+    glance = np.zeros((len(last), frames, 3))  # of what is looked at alone
     for part, kind in zip(parts, kinds, strict=True):
         d, sign = part.draw, SIGN.get(part.movement, 1.0)
         w = np.asarray(ease(clock(frames)[None], d.lam[:, None]))
@@ -68,9 +69,13 @@ def combined(
         if kind in ("push", "pull", "dolly-zoom"):
             factor = (d.mu[:, None] - 1.0) * w + 1.0
             r = r * factor
-            focal = focal * factor if kind == "dolly-zoom" else focal
+            if kind == "dolly-zoom":
+                focal = focal * factor
+            else:
+                shift = shift + lift(d, factor)
         elif kind == "zoom":
-            focal = focal / ((d.mu[:, None] - 1.0) * w + 1.0)
+            factor = (d.mu[:, None] - 1.0) * w + 1.0
+            focal, glance = focal / factor, lift(d, factor)
         elif kind == "arc":
             phi = phi + sign * d.turn[:, None] * since
         elif kind == "crane":
@@ -85,7 +90,7 @@ def combined(
     aim = held + draw.offset[:, None]
     position = aim + r[..., None] * direction(theta, phi) + shift
     position[..., 2] = np.maximum(position[..., 2], FLOOR_CLEARANCE)
-    return _turned(position, aim + shift, turn, focal, film, roll, kinds, draw, fps, seeds)
+    return _turned(position, aim + shift + glance, turn, focal, film, roll, kinds, draw, fps, seeds)
 
 
 def _turned(

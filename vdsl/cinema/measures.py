@@ -16,20 +16,19 @@ from numpy.typing import NDArray
 from runtime.world import World
 
 from . import space
-from .framing import Array, stretch
+from .composition import everybody_seen, framing, size_error
+from .framing import Array
 from .score import geometry_score as geometry_score
 from .sight import backdrop_gaps, clear_lines, clear_of_people, hidden_walls
-from .sizes import CORE, PAPER_RADIUS, Size
 from .subject import SIGHT, Subject
+from .takes import Bools, Picture, Takes, key_sample, mean_of, samples, within
 from .track import CameraTrack, camera_axes, project
 from .vectors import dot, length
 
-Bools = NDArray[np.bool_]
-
-SAMPLES = 10
 #: Names of what :func:`measure` returns, each [P].
 MEASURES = (
     "visibility",  # share of the subject's points in the frame that nothing hides, 0..1
+    "ends_visible",  # the same at the first or last frame of the window, whichever is less
     "head_visible",  # share of the window in which the eyes are in the frame and not hidden
     "in_frame",  # share of the window in which head and middle of what is framed are in the frame
     "size_error",  # |log| of the framed stretch's height against the asked one, at the key frame
@@ -37,6 +36,7 @@ MEASURES = (
     "headroom",  # height of the frame above the crown, share of the frame, mean over the window
     "headroom_error",  # the same, off the size's own headroom
     "head_cut",  # how far what the size puts at the top is above the frame, share of its height, the greatest
+    "head_cropped",  # how much a border of the frame runs through the head at the first frame or the last
     "feet_cut",  # the same below the frame, for sizes that are to show the whole; 0 for the others
     "view",  # share of the window in which everybody a two-shot is of, or the shoulder it is over, is seen so
     "lead_room",  # more room ahead of the face than behind: −1..1, 0 where it looks at the camera
@@ -57,32 +57,6 @@ MEASURES = (
 
 
 @dataclass(frozen=True, eq=False)
-class Takes:
-    """P takes to measure.
-
-    sizes: of every take; window: bool [P, F] on the sampled frames; key: [P] frame the size is asked at
-    paper: whether sizes are meant as the paper's distances rather than landmarks on lines
-    others: pillars (foot [T, 3], crown [T, 3], radius) of everybody else
-    ignore: object id whose boxes hide nothing (the thing filmed)
-    interest: [T, 3] each, other points one would like to see
-    view: one of :data:`vdsl.lang.ir.VIEWS`, or ""
-    near: the boxes near the cameras at the sampled frames, where somebody has looked already
-    """
-
-    track: CameraTrack
-    sizes: tuple[Size, ...]
-    window: Bools
-    key: NDArray[np.int64]
-    roll: float
-    paper: bool
-    others: tuple[tuple[Array, Array, float], ...]
-    ignore: int | None = None
-    interest: tuple[Array, ...] = ()
-    near: space.Nearby | None = None
-    view: str = ""
-
-
-@dataclass(frozen=True, eq=False)
 class Measured:
     """values: [P] by the names of :data:`MEASURES`; hidden: [P, W] walls taken away
     shown, people: [P] least distance to walls that are drawn, and to other people, metres
@@ -94,12 +68,6 @@ class Measured:
     people: Array
 
 
-def samples(frames: int) -> NDArray[np.int64]:
-    """Indices of the frames looked at."""
-    count = min(frames, SAMPLES)
-    return np.asarray((np.arange(count) * ((frames - 1) / max(count - 1, 1))).round().astype(np.int64))
-
-
 def measure(takes: Takes, subject: Subject, world: World, fps: float) -> Measured:
     """All measures of all takes of one performance."""
     track, at = takes.track, samples(subject.frames)
@@ -108,16 +76,20 @@ def measure(takes: Takes, subject: Subject, world: World, fps: float) -> Measure
     names = list(subject.landmarks)
     points = np.stack([subject.landmarks[n][at] for n in names], axis=1)  # [F, K, 3]
     xy, depth = project(points[None], camera, axes, track.focal[:, at], track.sensor)
-    picture = _Picture(names, xy, depth)
+    picture = Picture(names, xy, depth)
 
     hidden = _hidden(world, track, at, camera, axes, picture, points[:, names.index("waist")])
-    values, inside = _framing(takes, subject, at, picture)
+    values, inside = framing(takes, subject, at, picture)
     sight_index = [names.index(n) for n in SIGHT]
     sight = points[:, sight_index]
     others = [(foot[at], crown[at], radius) for foot, crown, radius in takes.others]
-    seen = clear_lines(world.solids, camera, sight, hidden, takes.ignore)
-    seen &= clear_of_people(camera, sight, others)
-    values["view"] = _view(takes, subject, at, camera, axes)
+
+    def seen_from(points: Array) -> Bools:
+        clear = clear_lines(world.solids, camera, points, hidden, takes.ignore)
+        return np.asarray(clear & clear_of_people(camera, points, others))
+
+    seen = seen_from(sight)
+    values["view"] = everybody_seen(takes, subject, at, camera, axes, seen_from)
     values |= _visibility(takes, inside[:, :, sight_index], seen)
     shown = _shown(takes, world, at, camera, axes, hidden, others)
     values["interest"] = _interest(takes, shown)
@@ -126,11 +98,11 @@ def measure(takes: Takes, subject: Subject, world: World, fps: float) -> Measure
     values["foreground"] = _foreground(takes, world, at, camera, axes, picture, hidden)
     values |= _motion(track, takes.roll, fps)
     values["face"] = _face(takes, subject, at, camera, points[:, names.index("eyes")])
-    rows, key = np.arange(len(camera)), _key_sample(takes, at)
+    rows, key = np.arange(len(camera)), key_sample(takes, at)
     values["elevation"] = np.degrees(-rotation[rows, key, 1])
     values["height"] = camera[rows, key, 2] - subject.floor
     if not takes.paper:
-        values["size_error"] = _size_error(takes, points, names, camera[rows, key], axes[rows, key], key, at)
+        values["size_error"] = size_error(takes, points, names, camera[rows, key], axes[rows, key], key, at)
     values["backdrop_gap"] = _gaps(world, hidden, track, at, camera, axes, points[:, names.index("waist")])
 
     near = takes.near if takes.near is not None else space.nearby(world.solids, camera)
@@ -140,125 +112,21 @@ def measure(takes: Takes, subject: Subject, world: World, fps: float) -> Measure
     return Measured(values, hidden, room.shown, people)
 
 
-@dataclass(frozen=True, eq=False)
-class _Picture:
-    """xy: [P, F, K, 2] picture coordinates of the landmarks; depth: [P, F, K]."""
-
-    names: list[str]
-    xy: Array
-    depth: Array
-
-    def of(self, name: str) -> Array:
-        return np.asarray(self.xy[:, :, self.names.index(name)])
-
-
-def _mean(values: Array | Bools, window: Bools) -> Array:
-    """Mean over the window's frames: [P, F] -> [P]."""
-    return np.asarray((values * window).sum(axis=1) / np.maximum(window.sum(axis=1), 1))
-
-
-def _key_sample(takes: Takes, at: NDArray[np.int64]) -> NDArray[np.int64]:
-    return np.asarray(np.abs(at[None] - takes.key[:, None]).argmin(axis=1))
-
-
-def _framing(
-    takes: Takes, subject: Subject, at: NDArray[np.int64], picture: _Picture
-) -> tuple[dict[str, Array], Bools]:
-    """Measures of where the landmarks are in the picture, and which are inside it [P, F, K]."""
-    xy, window = picture.xy, takes.window
-    inside = _within(xy, picture.depth, 0.0)
-    rows = np.arange(len(xy))
-    upper = np.array([picture.names.index(s.upper) for s in takes.sizes])
-    lower = np.array([picture.names.index(s.lower) for s in takes.sizes])
-    top = np.array([s.top for s in takes.sizes])
-    eyes = picture.of("eyes")
-    core = np.array([picture.names.index(CORE[s.name]) for s in takes.sizes])
-    heads = inside[:, :, picture.names.index("eyes")]
-    both = heads & inside[rows, :, core]
-    key = _key_sample(takes, at)
-    depth = np.maximum(picture.depth[:, :, picture.names.index("pocket")], 0.01)
-    view = depth * takes.track.sensor[1] / takes.track.focal[:, at]
-    drift = np.abs(np.log(view / view[rows, key][:, None]))
-    error = np.zeros(len(xy))
-    if takes.paper:
-        asked = np.array([PAPER_RADIUS[s.name] for s in takes.sizes]) * subject.height
-        error = np.abs(np.log(view[rows, key] / asked))
-    crown, sole = xy[rows, :, upper, 1], xy[rows, :, lower, 1]
-    whole = np.array([s.lower == "feet" for s in takes.sizes])
-    return {
-        "in_frame": _mean(both, window),
-        "size_error": error,
-        "size_drift": np.where(window, drift, 0.0).max(axis=1),
-        "headroom": np.clip(_mean(crown, window), -1.0, 2.0),
-        "headroom_error": np.minimum(_mean(np.abs(crown - top[:, None]), window), 2.0),
-        "head_cut": _beyond(-crown, window),
-        "feet_cut": np.where(whole, _beyond(sole - 1.0, window), 0.0),
-        "thirds_error": np.minimum(_mean(np.abs(eyes[..., 1] - 1 / 3), window), 2.0),
-        "lead_room": _lead(takes, subject, at, eyes[..., 0]),
-    }, inside
-
-
-def _size_error(
-    takes: Takes,
-    points: Array,
-    names: list[str],
-    camera: Array,
-    axes: Array,
-    key: NDArray[np.int64],
-    at: NDArray[np.int64],
-) -> Array:
-    """|log| of what the size's stretch fills of the frame at the key sample, against its share: [P]."""
-    upper, lower = (
-        points[key, np.array([names.index(getattr(s, end)) for s in takes.sizes])]
-        for end in ("upper", "lower")
-    )
-    focal = takes.track.focal[np.arange(len(key)), at[key]]
-    filled = stretch(upper, lower, camera, axes, focal, takes.track.sensor)
-    share = np.array([s.share for s in takes.sizes])
-    return np.asarray(np.abs(np.log(np.maximum(filled, 1e-4) / share)))
-
-
-def _beyond(over: Array, window: Bools) -> Array:
-    """The most by which something is over a border of the frame while the window is open: [P, F] -> [P]."""
-    return np.clip(np.where(window, over, 0.0).max(axis=1), 0.0, 2.0)
-
-
-def _view(takes: Takes, subject: Subject, at: NDArray[np.int64], camera: Array, axes: Array) -> Array:
-    """Whether all heads are in the frame, or the near head at its side: a share of the window, [P]."""
-    shoulder = takes.view == "ots" and subject.via is not None
-    heads = [subject.via] if shoulder and subject.via is not None else list(subject.heads.values())
-    if not heads:
-        return np.ones(len(camera))
-    points = np.stack([head[at] for head in heads], axis=1)
-    xy, depth = project(points[None], camera, axes, takes.track.focal[:, at], takes.track.sensor)
-    if not shoulder:
-        return _mean(np.asarray(_within(xy, depth, 0.03).all(axis=-1)), takes.window)
-    aside, high = np.abs(xy[..., 0, 0] - 0.5), xy[..., 0, 1]
-    nearer = (depth[..., 0] > 0.2) & (depth[..., 0] < 0.75 * length(camera - subject.landmarks["eyes"][at]))
-    there = nearer & (aside > 0.16) & (aside < 0.62) & (high > -0.6) & (high < 0.75)
-    return _mean(np.asarray(there), takes.window)
-
-
-def _within(xy: Array, depth: Array, margin: float) -> Bools:
-    """Which points are before the camera and inside the frame by so much of its size."""
-    x, y, far = xy[..., 0], xy[..., 1], 1.0 - margin
-    return np.asarray((depth > 0.05) & (x > margin) & (x < far) & (y > margin) & (y < far))
-
-
-def _lead(takes: Takes, subject: Subject, at: NDArray[np.int64], x: Array) -> Array:
-    yaw = takes.track.rotation[:, at, 2]
-    sideways = subject.face[None, at, 0] * np.sin(yaw) - subject.face[None, at, 1] * np.cos(yaw)
-    return np.clip(_mean(sideways * (1.0 - 2.0 * x), takes.window), -1.0, 1.0)
-
-
 def _visibility(takes: Takes, inside: Bools, seen: Bools) -> dict[str, Array]:
     window = takes.window[:, :, None]
     shown = (inside & window).sum(axis=(1, 2))
     clear = (inside & seen & window).sum(axis=(1, 2))
+    some = (inside & seen).sum(axis=2) / np.maximum(inside.sum(axis=2), 1)
+    first, last = takes.window.argmax(axis=1), len(some[0]) - 1 - takes.window[:, ::-1].argmax(axis=1)
+    rows = np.arange(len(some))
     head = (inside[:, :, 0] & seen[:, :, 0] & takes.window).sum(axis=1) / np.maximum(
         takes.window.sum(axis=1), 1
     )
-    return {"visibility": clear / np.maximum(shown, 1), "head_visible": head}
+    return {
+        "visibility": clear / np.maximum(shown, 1),
+        "head_visible": head,
+        "ends_visible": np.minimum(some[rows, first], some[rows, last]),
+    }
 
 
 def _shown(
@@ -280,7 +148,7 @@ def _shown(
     ).reshape(len(camera), F, K)
     seen &= clear_of_people(camera, points, others)
     xy, depth = project(points[None], camera, axes, takes.track.focal[:, at], takes.track.sensor)
-    return _within(xy, depth, 0.02) & seen
+    return within(xy, depth, 0.02) & seen
 
 
 def _interest(takes: Takes, shown: Bools) -> Array:
@@ -288,7 +156,7 @@ def _interest(takes: Takes, shown: Bools) -> Array:
         return np.ones(len(shown))
     share = shown.mean(axis=-1)
     # a pan may lead from the subject to the other one, so both parts of the time count
-    return np.maximum(_mean(share, takes.window), _mean(share, ~takes.window))
+    return np.maximum(mean_of(share, takes.window), mean_of(share, ~takes.window))
 
 
 def _foreground(
@@ -297,7 +165,7 @@ def _foreground(
     at: NDArray[np.int64],
     camera: Array,
     axes: Array,
-    picture: _Picture,
+    picture: Picture,
     hidden: Bools,
 ) -> Array:
     """Eight looks across the frame, half way to the subject, on every third sampled frame."""
@@ -322,7 +190,7 @@ def _foreground(
 def _face(takes: Takes, subject: Subject, at: NDArray[np.int64], camera: Array, eyes: Array) -> Array:
     to_camera = camera - eyes[None]
     cosine = dot(to_camera, subject.face[None, at]) / np.maximum(length(to_camera), 1e-9)
-    return _mean(cosine, takes.window)
+    return mean_of(cosine, takes.window)
 
 
 def _motion(track: CameraTrack, roll: float, fps: float) -> dict[str, Array]:
@@ -355,7 +223,7 @@ def _hidden(
     at: NDArray[np.int64],
     camera: Array,
     axes: Array,
-    picture: _Picture,
+    picture: Picture,
     heart: Array,
 ) -> Bools:
     depth = np.maximum(picture.depth[:, :, picture.names.index("waist")], 0.1)

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -35,6 +36,8 @@ class Draw:
     before: share of a dolly's or pedestal's way that lies before the framed position (1: ends on it)
     key: 0 where the framing is of the first frame, 1 where of the last
     on: True where a tilt or pan ends on the subject
+    rise: metres the aim would be raised if the frame shrank to nothing: pushes, pulls and zooms raise it as
+        the frame grows smaller, so that a head stays where it is in the picture; 0 for ``rig paper``
     """
 
     r: Array
@@ -49,6 +52,7 @@ class Draw:
     before: Array
     key: NDArray[np.int64]
     on: NDArray[np.bool_]
+    rise: Array
 
 
 #: +1 or −1 for the directions: pan left, tilt up, dolly right, pedestal up and arc right are positive.
@@ -122,19 +126,27 @@ def follow(path: Array, draw: Draw, sign: float) -> Path3:
     return camera, path[None] + offset, _hold(draw.focal, len(path))
 
 
+def lift(draw: Draw, factor: Array) -> Array:
+    """How far the aim is raised, [P, T, 3], where the frame is ``factor`` [P, T] of what it is at first."""
+    at_key = np.where(draw.key == 1, factor[:, -1], factor[:, 0])
+    return np.asarray((draw.rise[:, None] * (1.0 - factor / at_key[:, None]))[..., None] * (0.0, 0.0, 1.0))
+
+
 def push_pull(path: Array, draw: Draw, sign: float) -> Path3:
-    """``r^t = ((μ − 1) w + 1) r^0`` around p̂(t)."""
-    reach = ((draw.mu[:, None] - 1.0) * _weights(path, draw) + 1.0) * draw.r[:, None]
-    aim = path[None] + draw.offset[:, None]
+    """``r^t = ((μ − 1) w + 1) r^0`` around p̂(t), raised as it comes nearer."""
+    factor = (draw.mu[:, None] - 1.0) * _weights(path, draw) + 1.0
+    reach = factor * draw.r[:, None]
+    aim = path[None] + draw.offset[:, None] + lift(draw, factor)
     camera = _lifted(aim + reach[..., None] * direction(draw.theta, draw.phi)[:, None])
     return camera, aim, _hold(draw.focal, len(path))
 
 
 def zoom(path: Array, draw: Draw, sign: float) -> Path3:
-    """Stands where the first frame is framed; ``f^t = f^0 / ((μ − 1) w + 1)``; looks at p̂(t)."""
+    """Stands where the first frame is framed; ``f^t = f^0 / ((μ − 1) w + 1)``; looks at p̂(t), raised."""
     camera = _lifted(path[0] + draw.offset + draw.r[:, None] * direction(draw.theta, draw.phi))
-    focal = draw.focal[:, None] / ((draw.mu[:, None] - 1.0) * _weights(path, draw) + 1.0)
-    return _hold(camera, len(path)), path[None] + draw.offset[:, None], focal
+    factor = (draw.mu[:, None] - 1.0) * _weights(path, draw) + 1.0
+    aim = path[None] + draw.offset[:, None] + lift(draw, factor)
+    return _hold(camera, len(path)), aim, draw.focal[:, None] / factor
 
 
 def _turned(path: Array, draw: Draw, sign: float, horizontal: bool) -> Path3:
@@ -183,8 +195,8 @@ def pedestal(path: Array, draw: Draw, sign: float) -> Path3:
 
 
 def arc(path: Array, draw: Draw, sign: float) -> Path3:
-    """``φ^t = φ^0 ± turn·w`` around p̂(t)."""
-    phi = draw.phi[:, None] + sign * draw.turn[:, None] * _weights(path, draw)
+    """``φ^t = φ ± turn·(w − k)`` around p̂(t)."""
+    phi = draw.phi[:, None] + sign * draw.turn[:, None] * (_weights(path, draw) - (draw.key == 1)[:, None])
     theta = np.broadcast_to(draw.theta[:, None], phi.shape)
     aim = path[None] + draw.offset[:, None]
     return _lifted(aim + draw.r[:, None, None] * direction(theta, phi)), aim, _hold(draw.focal, len(path))
@@ -205,9 +217,12 @@ MOVES: dict[str, Callable[[Array, Draw, float], Path3]] = {
 }
 
 
-_TWO_WORDS = ("dolly-zoom", "whip-pan")
+_TWO_WORDS = ("dolly-zoom", "whip-pan", "rack-focus")
+#: The movement of the lens alone: the camera does what it does besides, or stands.
+RACK = "rack-focus"
 
 
+@lru_cache(maxsize=1024)  # asked for every candidate
 def family(movement: str) -> str:
     """``pan`` for ``pan-left``, ``dolly-zoom`` for ``dolly-zoom-in``; ``push+pan`` for ``push+pan-left``."""
     if "+" in movement:
@@ -215,9 +230,15 @@ def family(movement: str) -> str:
     return next((name for name in _TWO_WORDS if movement.startswith(name)), movement.split("-")[0])
 
 
+@lru_cache(maxsize=1024)
 def families(movement: str) -> frozenset[str]:
-    """The families of all that goes on at once."""
-    return frozenset(family(part) for part in movement.split("+"))
+    """The families of all that a camera does at once."""
+    return frozenset(family(part) for part in of_camera(movement).split("+"))
+
+
+def of_camera(movement: str) -> str:
+    """What the camera does in a movement, without what the lens does."""
+    return "+".join(part for part in movement.split("+") if part != RACK) or "static"
 
 
 def track_of(

@@ -53,6 +53,8 @@ class Subject:
 
     def shifted(self, up: float) -> Subject:
         """The same so many metres higher."""
+        if abs(up) < 1e-12:
+            return self
         shift = np.array((0.0, 0.0, up))
         moved = {name: path + shift for name, path in self.landmarks.items()}
         heads = {name: head + shift for name, head in self.heads.items()}
@@ -72,7 +74,7 @@ def person(
     heading: NDArray[np.float64],
 ) -> Subject:
     """A performed character; landmarks are points of the bind pose carried by their joints."""
-    world = np.asarray(world_from_joint, np.float64)
+    world = np.asarray(world_from_joint)
     bind, h = skeleton.bind, skeleton.height
     eye = bind[JOINT["eye_l"]]
     head = (h - eye[2]) / 0.525  # chin to crown; the eyes lie a little below its middle
@@ -83,12 +85,15 @@ def person(
         j = JOINT[joint]
         local = np.array((x, 0.0, z)) - bind[j]
         local[1] = 0.0
-        return np.asarray(world[:, j, :3, :3] @ local + world[:, j, :3, 3])
+        turn, at = world[:, j, :3, :3].astype(np.float64), world[:, j, :3, 3]
+        return np.asarray(turn @ local + at)
 
     def joints(*names: str) -> NDArray[np.float64]:
-        return np.asarray(world[:, [JOINT[n] for n in names]][..., :3, 3].mean(axis=1))
+        return np.asarray(world[:, [JOINT[n] for n in names]][..., :3, 3].astype(np.float64).mean(axis=1))
 
-    soles = world[:, [JOINT[n] for n in ("foot_l", "foot_r", "toe_l", "toe_r")]][..., :3, 3]
+    soles = world[:, [JOINT[n] for n in ("foot_l", "foot_r", "toe_l", "toe_r")]][..., :3, 3].astype(
+        np.float64
+    )
     feet = soles.mean(axis=1)
     feet[:, 2] = np.maximum(soles[:, :, 2].min(axis=1) - bind[JOINT["toe_l"]][2], np.asarray(position)[:, 2])
     landmarks = {
@@ -107,9 +112,9 @@ def person(
         "hand_l": joints("hand_l"),
         "hand_r": joints("hand_r"),
     }
-    face = world[:, JOINT["head"], :3, 0]
+    face = world[:, JOINT["head"], :3, 0].astype(np.float64)
     return Subject(
-        name, "person", h, np.asarray(position, float), np.asarray(heading, float), landmarks, face.copy()
+        name, "person", h, np.asarray(position, float), np.asarray(heading, float), landmarks, face
     )
 
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from .moves import family
+from .moves import RACK, family, of_camera
 
 #: Azimuths φ of a fixed scale, evenly around the subject's heading (section 4.1).
 AZIMUTHS = 8
@@ -20,6 +20,7 @@ LEAD = 0.13
 FILM = (30.0, 80.0)
 #: μ of what comes nearer, and of what goes away: below 1.05 nothing would be seen to move (section 4.1).
 INWARDS, OUTWARDS = (0.5, 0.8), (1.05, 1.2)
+_SEEN = 1.1  # least μ outwards of ``rig cinema``: less hardly reads as going back
 #: A dolly zoom's: more, as it is the background that has to be seen to change.
 _DOLLY_ZOOM = {"dolly-zoom-in": (0.5, 0.65), "dolly-zoom-out": (1.55, 2.15)}
 #: Degrees turned (section 4.1 for the paper's).
@@ -32,7 +33,7 @@ TURNS = {
     "whip-pan": (60.0, 100.0),
 }
 #: Ways as shares of what the frame shows at the subject: a dolly's of its width, a pedestal's of its height.
-TRAVELS = {"dolly": (0.22, 0.42), "pedestal": (0.3, 0.65)}
+TRAVELS = {"dolly": (0.22, 0.42), "pedestal": (0.28, 0.5)}
 #: Shares of a dolly's or pedestal's way that lie before the framed position.
 BEFORE = (0.0, 0.5, 1.0)
 _TO_MU = ("push", "pull", "zoom", "dolly-zoom")
@@ -69,11 +70,13 @@ class Subspace:
     free: tuple[Variable, ...]
 
 
-def mu_range(movement: str) -> tuple[float, float]:
+def mu_range(movement: str, cinema: bool = True) -> tuple[float, float]:
     """μ of pushes, pulls, zooms and dolly zooms."""
     if movement in _DOLLY_ZOOM:
         return _DOLLY_ZOOM[movement]
-    return INWARDS if movement in ("push", "zoom-in") else OUTWARDS
+    if movement in ("push", "zoom-in"):
+        return INWARDS
+    return (_SEEN, OUTWARDS[1]) if cinema else OUTWARDS
 
 
 def turn_range(kind: str) -> tuple[float, float]:
@@ -93,7 +96,7 @@ def subspace(
 
     lens: the line's range in mm; lam: its choices of λ
     """
-    parts, cinema = movement.split("+"), rig == "cinema"
+    parts, cinema = of_camera(movement).split("+"), rig == "cinema"
     fixed = [
         ("p", "the subject, by a smoothed path" if cinema else f"the subject, at the height of {scale}"),
         ("r", f"solved so that {scale} fills the frame" if cinema else f"the share of h that {scale} has"),
@@ -110,10 +113,13 @@ def subspace(
         ]
     else:
         fixed.append(("f", "50 mm, or the nearest the line allows"))
-    if movement not in ("static", "handheld"):
+    if of_camera(movement) not in ("static", "handheld"):
         free.append(Variable("λ", "easing", "", grid=lam))
     if len(parts) > 1:
         free.append(Variable("λ′", "easing of the second movement", "", grid=lam))
+    if RACK in movement.split("+"):
+        fixed.append(("s", "from the eyes or middle of one to those of the other"))
+        free.append(Variable("λ″", "easing of the focus", "", grid=lam))
     own = [v for part in parts for v in _own(part, family(part), cinema)]
     return Subspace(tuple(fixed), (*free, *dict.fromkeys(own)))
 
@@ -128,7 +134,9 @@ def _own(movement: str, kind: str, cinema: bool) -> list[Variable]:
     ends = Variable("k", "frame the framing is of", "", grid=("start", "end"))
     out = [ends] if kind == "static" or (cinema and kind not in ("zoom", "follow", "tilt", "pan")) else []
     if kind in _TO_MU:
-        out.append(Variable("μ", "distance, or width of the frame, at the end", "", *mu_range(movement)))
+        out.append(
+            Variable("μ", "distance, or width of the frame, at the end", "", *mu_range(movement, cinema))
+        )
     if kind in TURNS:
         out.append(Variable("turn", "angle turned", "°", *turn_range(kind)))
     if kind in ("tilt", "pan"):

@@ -29,6 +29,7 @@ _ANY = float("inf")
 NOTES = {
     "visibility": Note("share", "nothing hides the subject", 0.9, 1.0),
     "picture_visibility": Note("share", "nothing hides the subject in the picture", 0.85, 1.0),
+    "ends_visible": Note("share", "nothing hides it at the first frame or the last", 0.8, 1.0),
     "head_visible": Note("share", "the head is seen all the time", 0.9, 1.0),
     "in_frame": Note("share", "head and middle stay in the frame", 0.9, 1.0),
     "size_error": Note("log", "the size is the one asked for", 0.0, 0.1),
@@ -36,6 +37,7 @@ NOTES = {
     "headroom": Note("frame height", "a little air over the head", 0.02, 0.3),
     "headroom_error": Note("frame height", "as much air as the size wants", 0.0, 0.06),
     "head_cut": Note("frame height", "the head is not cut", 0.0, 0.02),
+    "head_cropped": Note("share", "no border runs through the head at the start or the end", 0.0, 0.3),
     "feet_cut": Note("frame height", "the feet are not cut", 0.0, 0.02),
     "view": Note("share", "everybody the view is of is seen", 0.9, 1.0),
     "lead_room": Note("−1..1", "more room ahead of the face than behind", -0.02, 1.0),
@@ -68,6 +70,11 @@ _COMPARED = {
     "backdrop_gap": ("less wall missing behind", "more wall missing behind", "backdrop_gap"),
     "foreground": ("less in the way", "more in the way", "foreground"),
     "empty": ("less empty", "emptier", "empty"),
+    "head_cropped": (
+        "the head less cut at the ends",
+        "the head cut more at the start or the end",
+        "head_cropped",
+    ),
     "logit": ("liked better by the ranker", "liked less by the ranker", "logit"),
 }
 

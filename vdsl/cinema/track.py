@@ -20,6 +20,8 @@ class CameraTrack:
 
     position [..., T, 3]; rotation [..., T, 3] as (roll, pitch, yaw); focal [..., T];
     look_at [..., T, 3], the aimed-at point; sensor (width, height) in mm
+    focus [..., T], metres along the optical axis to what is sharp, None where everything is; aperture [...],
+        f-number of the lens, 0 where everything is sharp
     """
 
     position: NDArray[np.float64]
@@ -27,6 +29,20 @@ class CameraTrack:
     focal: NDArray[np.float64]
     look_at: NDArray[np.float64]
     sensor: tuple[float, float]
+    focus: NDArray[np.float64] | None = None
+    aperture: NDArray[np.float64] | float = 0.0
+
+    def only(self, rows: NDArray[np.int64] | int) -> CameraTrack:
+        """Some of the tracks of a batch, or one of them by itself."""
+        return CameraTrack(
+            self.position[rows],
+            self.rotation[rows],
+            self.focal[rows],
+            self.look_at[rows],
+            self.sensor,
+            None if self.focus is None else self.focus[rows],
+            self.aperture if isinstance(self.aperture, float) else self.aperture[rows],
+        )
 
 
 def look_at_rotation(

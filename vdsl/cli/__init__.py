@@ -13,18 +13,26 @@ import typer
 from .assets import assets
 from .bench import bench
 from .check import check
+from .clean import clean
 from .compile import compile_command
+from .dataset import dataset
+from .diff import diff
 from .ends import ends_told
+from .evaluate import evaluate
 from .explain import explain
+from .new import new
+from .pick import pick
 from .preview import preview
+from .serve import serve
+from .stats import stats
 from .train import train
+from .watch import watch
 from .why import why
 
 app = typer.Typer(
     name="vdsc",
     help="Turn a written storyboard into ranked moving shots.",
     no_args_is_help=True,
-    add_completion=False,
     pretty_exceptions_enable=False,
 )
 app.command("compile")(compile_command)
@@ -33,7 +41,16 @@ app.command()(explain)
 app.command()(assets)
 app.command()(preview)
 app.command()(why)
+app.command()(diff)
+app.command()(stats)
+app.command()(pick)
+app.command()(watch)
+app.command()(new)
+app.command()(clean)
+app.command()(serve)
+app.command()(dataset)
 app.command()(train)
+app.command()(evaluate)
 app.command()(bench)
 
 

@@ -1,4 +1,4 @@
-"""``vdsc assets``: what there is to write with: sets, props, cast and actions."""
+"""``vdsc assets``: what there is to write with: sets, props, cast, actions and camera styles."""
 
 from __future__ import annotations
 
@@ -29,11 +29,12 @@ class Kind(str, Enum):
     props = "props"
     cast = "cast"
     actions = "actions"
+    styles = "styles"
 
 
 def assets(
     kind: Annotated[
-        Kind | None, typer.Argument(help="sets, props, cast or actions.", show_default=False)
+        Kind | None, typer.Argument(help="sets, props, cast, actions or styles.", show_default=False)
     ] = None,
     name: Annotated[str, typer.Argument(help="One of them, in full.", show_default=False)] = "",
     search: Annotated[
@@ -52,10 +53,15 @@ def assets(
     device: Annotated[str, typer.Option(help="Where pictures are drawn: auto, cpu, cuda, vulkan.")] = "auto",
 ) -> None:
     """List what there is to write with, show one of it in full, or draw it."""
+    if kind is Kind.styles:
+        from .styles import list_styles
+
+        list_styles(name, search, json_out, preview, device)
+        return
     catalog = _catalog(file)
     if kind is None:
         if preview is not None or name:
-            stop("say what: sets, props, cast or actions", USAGE)
+            stop("say what: sets, props, cast, actions or styles", USAGE)
         _overview(catalog, search, json_out)
         return
     found = _found(catalog, kind, name, search)
@@ -114,6 +120,10 @@ def _overview(catalog: Catalog, search: str, json_out: bool) -> None:
     for plural, each in found.items():
         first = ", ".join(row.name for row in each[:7]) + (" …" if len(each) > 7 else "")
         print(f"{len(each):4d} {plural:8s} {first}")
+    from .styles import first_words
+
+    count, first = first_words(search)
+    print(f"{count:4d} {'styles':8s} {first}")
     print("`vdsc assets sets` lists one kind, `--search WORDS` finds, `--preview FILE.png` draws")
 
 

@@ -16,6 +16,7 @@ import typer
 from ..lang.diagnostics import nearest
 from ..lang.ir import Storyboard
 from ..lang.settings import Settings
+from ..pipeline.project import project_of
 from ..pipeline.script import Checked, ScriptError, load_storyboard
 from .show import print_report, printable, write_line
 
@@ -34,6 +35,7 @@ def check_or_exit(
 ) -> Checked:
     """A storyboard without errors; else print what is wrong and leave with the right code.
 
+    It has the settings of its ``vds.toml`` where neither it nor ``overrides`` says others.
     quiet_warnings: print nothing where there are only warnings
     """
     if not path.exists():
@@ -44,7 +46,7 @@ def check_or_exit(
     if path.is_dir():
         stop(f"{path} is a folder; name a .vds file in it.", USAGE)
     try:
-        checked = load_storyboard(path, overrides)
+        checked = load_storyboard(path, overrides, project_of(path).settings)
     except ScriptError as error:
         print_report(error.report, format, str(path))
         raise typer.Exit(WRONG) from None
@@ -69,16 +71,21 @@ def check(
     continuity: Annotated[
         bool, typer.Option("--continuity", help="Say as well which cuts break the rules of cutting.")
     ] = False,
+    build: Annotated[
+        Path | None,
+        typer.Option("--build", "-b", help="The build whose cuts are told.", show_default="build/NAME"),
+    ] = None,
 ) -> None:
     """Check a storyboard and print every mistake, without making anything.
 
     With --continuity the cuts of its last build, build/NAME, are told; where there is none of the script as
-    it is, a few proposals of every shot are put in order by their geometry and the best ones looked at.
+    it is, a few proposals of every shot are put in order by their geometry and the best ones looked at. With
+    --build no other takes are looked at than those of that build.
     Exit code 0 if all is well, 1 if the storyboard has errors.
     """
-    checked = check_or_exit(file, format.value, quiet_warnings=continuity)
-    if continuity:
-        told = _check_cuts(file, checked, format.value)
+    checked = check_or_exit(file, format.value, quiet_warnings=continuity or build is not None)
+    if continuity or build is not None:
+        told = _check_cuts(file, checked, format.value, build)
         print_report(checked.report, format.value, str(file))
         if format is Format.text:
             write_line(printable(told), sys.stdout)
@@ -86,18 +93,24 @@ def check(
         write_line(f"{printable(str(file))}: {summary(checked.storyboard)}", sys.stdout)
 
 
-def _check_cuts(file: Path, checked: Checked, format: str) -> str:
+def _check_cuts(file: Path, checked: Checked, format: str, build: Path | None) -> str:
     """Add what cuts break to the findings; returns what was looked at."""
     # Only now: a plain check must not wait for numpy.
     from ..pipeline.rehearsal import PROPOSALS, continuity_in_memory, continuity_of_build, report_cuts
     from .failures import failures_told
 
-    folder = Path("build") / file.stem
+    folder = build or Path("build") / file.stem
     looked = f"continuity: the takes in {folder}"
+    made = (folder / "storyboard.json").is_file()
+    if build is not None and not made:
+        stop(f"there is no build at {folder}; `vdsc compile {file} -o {folder}` makes one", USAGE)
     with failures_told(file, format):
         found = continuity_of_build(folder, checked.storyboard)
+        if found is None and build is not None:
+            stop(f"the build at {folder} is of another text than {file}; compile it again", USAGE)
         if found is None:
             looked = f"continuity: the best of up to {PROPOSALS} proposals a shot, by their geometry"
+            looked += f" (the build in {folder} is of another text)" if made else ""
             found = continuity_in_memory(checked)
         report_cuts(found, checked.storyboard, checked.report)
     return f"{looked}; {len(found)} found"

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from enum import Enum
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
+from ..emit.guides import Guides, guides_of
 from ..lang import Settings
 from .check import USAGE, Format, check_or_exit, stop
 
@@ -26,6 +27,14 @@ class Judge(str, Enum):
 
     discriminator = "discriminator"
     geometry = "geometry"
+
+
+class Show(str, Enum):
+    """How posters are shown in the terminal."""
+
+    auto = "auto"
+    blocks = "blocks"
+    none = "none"
 
 
 class Rig(str, Enum):
@@ -55,16 +64,46 @@ def compile_command(
     rig: Annotated[
         Rig | None, typer.Option(help="How camera words become positions.", show_default="cinema")
     ] = None,
-    rank: Annotated[Judge, typer.Option(help="Who puts the proposals in order.")] = Judge.discriminator,
+    rank: Annotated[
+        Judge | None, typer.Option(help="Who puts the proposals in order.", show_default="discriminator")
+    ] = None,
     weights: Annotated[
         Path | None, typer.Option(help="Weights of the discriminator.", show_default="the shipped ones")
     ] = None,
-    device: Annotated[Device, typer.Option(help="Where pictures are drawn.")] = Device.auto,
+    device: Annotated[
+        Device | None, typer.Option(help="Where pictures are drawn.", show_default="auto")
+    ] = None,
     burn_in: Annotated[
-        bool, typer.Option("--burn-in", help="Write shot, take, timecode, lens and movement on every frame.")
-    ] = False,
+        bool | None,
+        typer.Option(
+            "--burn-in",
+            help="Write shot, take, timecode, lens and movement on every frame.",
+            show_default=False,
+        ),
+    ] = None,
+    guides: Annotated[
+        str, typer.Option(help="Draw over every frame: safe,thirds,cross, and a mask such as 2.39.")
+    ] = "",
+    arrows: Annotated[
+        bool | None,
+        typer.Option("--arrows/--no-arrows", help="Show on the sheet what moves.", show_default="arrows"),
+    ] = None,
     edit: Annotated[
-        bool, typer.Option("--edit", help="Choose takes for the sequence, so that cuts keep to the rules.")
+        bool | None,
+        typer.Option(
+            "--edit",
+            help="Choose takes for the sequence, so that cuts keep to the rules.",
+            show_default=False,
+        ),
+    ] = None,
+    cache: Annotated[
+        bool, typer.Option("--cache/--no-cache", help="Take shots that did not change from earlier runs.")
+    ] = True,
+    show: Annotated[
+        Show, typer.Option(help="Posters at the end: pictures where the terminal can, blocks, or none.")
+    ] = Show.auto,
+    as_json: Annotated[
+        bool, typer.Option("--json", help="Print what was made as a document of schema vds.compile/1.")
     ] = False,
     format: Annotated[Format, typer.Option(help="How to print what is found wrong.")] = Format.text,
 ) -> None:
@@ -80,38 +119,51 @@ def compile_command(
         size=_size(size),
         rig=rig.value if rig else None,
     )
+    drawn = _guides(guides)
     # The cheap check first: a script with errors is told so before anything heavy is loaded.
     check_or_exit(file, format.value, settings, quiet_warnings=True)
     if not file.is_file():  # a pipe is empty by now, and the check was only the first reading
         stop(f"{file} is no ordinary file; save the storyboard first", USAGE)
-    _run(file, out, settings, rank.value, weights, device.value, burn_in, edit, format.value)
+    how = {
+        "settings": settings,
+        "rank": rank.value if rank else None,
+        "weights": weights,
+        "device": device.value if device else None,
+        "burn_in": burn_in,
+        "edit": edit,
+        "arrows": arrows,
+        "guides": drawn,
+        "cache": cache,
+    }
+    _run(file, out, how, format.value, show.value, as_json)
 
 
-def _run(
-    file: Path,
-    out: Path | None,
-    settings: Settings,
-    rank: str,
-    weights: Path | None,
-    device: str,
-    burn_in: bool,
-    edit: bool,
-    format: str,
-) -> None:
+def _run(file: Path, out: Path | None, how: dict[str, Any], format: str, show: str, as_json: bool) -> None:
     # Only now: --help and scripts with errors must not wait for numpy, torch and taichi.
     from rich.console import Console
 
     from ..pipeline.compile import compile_file
-    from ..pipeline.options import Options
     from .failures import failures_told
-    from .outcome import print_outcome
+    from .outcome import print_document, print_outcome
     from .progress import Bars
+    from .wishes import options_of
 
-    options = Options(settings, device, rank, weights, burn_in, edit)
     console = Console(stderr=True)
-    with failures_told(file, format), Bars(console) as bars:
-        result = compile_file(file, out, options, bars)
-    print_outcome(result, format, file)
+    with failures_told(file, format):
+        options = options_of(file, **how)
+        with Bars(console) as bars:
+            result = compile_file(file, out, options, bars)
+    if as_json:
+        print_document(result, file)
+    else:
+        print_outcome(result, format, file, show)
+
+
+def _guides(text: str) -> Guides:
+    try:
+        return guides_of(text)
+    except ValueError as error:
+        raise typer.BadParameter(str(error), param_hint="--guides") from None
 
 
 def _size(text: str | None) -> tuple[int, int] | None:

@@ -35,9 +35,12 @@ class _Left(ProgressColumn):
 
 
 class Bars:
-    """One bar a stage on a terminal, nothing in a pipe. Use as a context manager."""
+    """One bar a stage on a terminal, nothing in a pipe. Use as a context manager.
 
-    def __init__(self, console: Console) -> None:
+    transient: the bars go away at the end
+    """
+
+    def __init__(self, console: Console, transient: bool = False) -> None:
         self._progress = Progress(
             TextColumn("{task.description:<10}"),
             BarColumn(bar_width=32),
@@ -46,6 +49,7 @@ class Bars:
             _Left(),
             console=console,
             disable=not console.is_terminal,
+            transient=transient,
         )
         self._tasks: dict[str, TaskID] = {}
 

@@ -17,6 +17,7 @@ from typing import TextIO
 
 from ..lang.diagnostics import Diagnostic, Report
 from ..lang.source import Span
+from ..pipeline.findings import finding
 
 SCHEMA = "vds.diagnostics/1"
 WIDTH = 116
@@ -47,7 +48,7 @@ def as_json(report: Report, file: str) -> str:
         "file": file,
         "errors": sum(d.severity == "error" for d in found),
         "warnings": sum(d.severity == "warning" for d in found),
-        "diagnostics": [_entry(d) for d in found],
+        "diagnostics": [finding(d) for d in found],
     }
     text = json.dumps(document, ensure_ascii=False, indent=2)
     # A file's name may hold bytes that are no text; escaped they are still JSON.
@@ -61,32 +62,6 @@ def _encodes(text: str) -> bool:
     except UnicodeEncodeError:
         return False
     return True
-
-
-def _entry(d: Diagnostic) -> dict[str, object]:
-    return {
-        "code": d.code,
-        "severity": d.severity,
-        "title": d.title,
-        "message": d.label,
-        **_place(d.span),
-        "help": d.help,
-        "suggestion": d.suggestion,
-        "fix": d.fix,
-        "notes": [{"message": text, **_place(span)} for span, text in d.notes],
-    }
-
-
-def _place(span: Span) -> dict[str, object]:
-    line, column = span.source.position(span.start)
-    end_line, end_column = span.source.position(span.end)
-    return {
-        "file": span.source.name,
-        "line": line + 1,
-        "column": column + 1,
-        "end_line": end_line + 1,
-        "end_column": end_column + 1,
-    }
 
 
 def as_text(diagnostics: Iterable[Diagnostic], colour: bool = False) -> str:

@@ -1,43 +1,85 @@
-"""``vdsc train``: film a training set from random stories, and train the discriminator on it."""
+"""``vdsc train``: train the discriminator, its ablation, or the head that learns from a writer's choices."""
 
 from __future__ import annotations
 
 import json
-from enum import Enum
+from collections.abc import Callable
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from .check import USAGE, stop
 from .compile import Device
 
-
-class Recipe(str, Enum):
-    """How to train: small and short for a CPU, or as in the paper."""
-
-    cpu = "cpu"
-    paper = "paper"
+if TYPE_CHECKING:
+    from ranker.config import TrainConfig
 
 
 def train(
-    out: Annotated[Path, typer.Argument(help="Folder for the training set, checkpoints, log and weights.")],
-    clips: Annotated[int, typer.Option(min=32, help="Clips to film, half of them good.")] = 2400,
-    recipe: Annotated[Recipe, typer.Option(help="How to train.")] = Recipe.cpu,
+    out: Annotated[
+        Path | None,
+        typer.Argument(help="Folder for checkpoints, log, curves and weights.", show_default=False),
+    ] = None,
+    data: Annotated[
+        Path | None,
+        typer.Option(help="The training set; where there is none, it is filmed.", show_default="OUT/clips"),
+    ] = None,
+    clips: Annotated[int, typer.Option(min=32, help="Clips to film, half of them good.")] = 10_000,
+    recipe: Annotated[
+        str, typer.Option(help="How to train: paper, cpu, or a JSON file as `training` in config.json.")
+    ] = "paper",
+    ablation: Annotated[
+        bool, typer.Option("--ablation", help="Train four times: L_b, with L_c, with L_q, all; and compare.")
+    ] = False,
+    picks: Annotated[
+        list[Path] | None,
+        typer.Option(help="Learn from the takes chosen for a storyboard instead; may be given again."),
+    ] = None,
+    weights: Annotated[
+        Path | None, typer.Option(help="With --picks: whose features.", show_default="the shipped ones")
+    ] = None,
     seed: Annotated[int, typer.Option(min=0, help="Seed of the stories and the training.")] = 0,
     device: Annotated[Device, typer.Option(help="Where pictures are drawn.")] = Device.auto,
     as_json: Annotated[bool, typer.Option("--json", help="Print what was measured as JSON.")] = False,
 ) -> None:
-    """Train the shot ranking discriminator on clips it films itself.
+    """Train the shot ranking discriminator on clips it films itself, or let it learn from your choices.
 
     Stopped and started again with the same folder, it goes on where it was. The new weights are in
-    OUT/weights; use them with `vdsc compile --weights OUT/weights`.
+    OUT/weights; use them with `vdsc compile --weights OUT/weights`. With --picks a small head is learnt from
+    the takes chosen with `vdsc pick` and kept as vds.taste in the project, where compile finds it.
     """
+    if picks:
+        _learn(picks, weights, device, as_json)
+    elif out is None:
+        stop("name a folder to train in, or a storyboard with --picks", USAGE)
+    else:
+        _train(out, data or out / "clips", clips, recipe, ablation, seed, device, as_json)
+
+
+def _learn(picks: list[Path], weights: Path | None, device: Device, as_json: bool) -> None:
+    # Only now: --help must not wait for numpy and torch.
+    from ..pipeline.tasting import learn_taste
+    from .failures import failures_told
+
+    with failures_told(picks[0]):
+        path, count = learn_taste(picks, weights, device.value)
+    print(
+        json.dumps({"taste": str(path), "choices": count})
+        if as_json
+        else f"{path}: learnt from {count} choices"
+    )
+
+
+def _train(
+    out: Path, data: Path, clips: int, recipe: str, ablation: bool, seed: int, device: Device, as_json: bool
+) -> None:
     # Only now: --help must not wait for numpy, torch and taichi.
     from dataclasses import replace
 
     from rich.console import Console
 
-    from ranker.config import RECIPES
+    from ranker.ablation import ablate
     from ranker.train import train as train_ranker
 
     from ..pipeline.dataset import generate
@@ -45,25 +87,48 @@ def train(
     from .progress import Bars
 
     console = Console(stderr=True)
+
+    def said(line: dict[str, Any]) -> None:
+        _say(line, console)
+
     with failures_told(out):
-        with Bars(console) as bars:
-            generate(out / "clips", clips, seed, device.value, bars)
-        measured = train_ranker(
-            out / "clips", out, replace(RECIPES[recipe.value], seed=seed), lambda line: _say(line, console)
-        )
+        config = replace(_recipe(recipe), seed=seed)
+        if data == out / "clips" or not (data / "dataset.json").exists():
+            with Bars(console) as bars:
+                generate(data, clips, seed, device.value, bars)
+        run: Callable[..., dict[str, Any]] = ablate if ablation else train_ranker
+        measured = run(data, out, config, said)
     if as_json:
         print(json.dumps(measured, indent=2))
     else:
-        print(f"weights: {out / 'weights'}")
+        print(f"comparison: {out / 'ablation.md'}" if ablation else f"weights: {out / 'weights'}")
+
+
+def _recipe(name: str) -> TrainConfig:
+    """A recipe by its name, or out of a file. Raises RankerError."""
+    from ranker.config import RECIPES, train_from_json
+    from ranker.errors import RankerError
+
+    if name in RECIPES:
+        return RECIPES[name]
+    try:
+        return train_from_json(json.loads(Path(name).read_text("utf-8")))
+    except FileNotFoundError:
+        raise RankerError(f"there is no recipe {name}: paper, cpu, or a JSON file") from None
+    except ValueError as error:
+        raise RankerError(f"{name}: is no JSON: {error}") from error
 
 
 def _say(line: dict[str, Any], console: Any) -> None:
     """A line of the training's log for people."""
-    if "epoch" in line:
+    if "training" in line:
+        console.print(f"training {line['training']}", highlight=False)
+    elif "epoch" in line:
+        held = ", ".join(f"{k} {v:.0%}" for k, v in line["held_out"].items() if v is not None)
         console.print(
             f"epoch {line['epoch']}/{line['epochs']}  {line['size']} px  loss {line['loss']:.3f}"
             f"  (binary {line['binary']:.3f}, class {line['class']:.3f}, contrast {line['contrast']:.3f})"
-            f"  {line['seconds']:.0f} s",
+            f"  {held}  {line['seconds']:.0f} s",
             highlight=False,
         )
     elif "measured" in line:

@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from ..lang.diagnostics import listing, nearest
+from ..lang.diagnostics import listing
 from .check import USAGE, check_or_exit, stop
+from .naming import shot_ids, shot_named
 from .show import count, printable, write_line
 
 if TYPE_CHECKING:
@@ -22,7 +23,12 @@ if TYPE_CHECKING:
 def why(
     file: Annotated[Path, typer.Argument(help="The storyboard, a .vds file.", show_default=False)],
     shot: Annotated[
-        str, typer.Argument(help="Which shot: its id, a part of it, or its number.", show_default=False)
+        str,
+        typer.Argument(
+            help="Which shot: its id, a part of it, or its number.",
+            show_default=False,
+            autocompletion=shot_ids,
+        ),
     ],
     take: Annotated[
         int | None, typer.Argument(min=1, help="Which take.", show_default="the best, and a word on each")
@@ -44,7 +50,7 @@ def why(
     in memory and put in order by its geometry. Exit code 0 if all is well, 1 if the storyboard has errors.
     """
     checked = check_or_exit(file, "text", quiet_warnings=True)
-    wanted = _shot(checked, shot)
+    wanted = shot_named(checked, shot)
     if space:
         _show_space(checked, wanted, as_json)
         return
@@ -60,27 +66,6 @@ def why(
     text = json.dumps(document, indent=1) if as_json else "\n".join(_lines(document, take))
     for line in text.split("\n"):
         write_line(printable(line), sys.stdout)
-
-
-def _shot(checked: Checked, wanted: str) -> str:
-    """The id of the shot that is meant; leaves where that is not clear."""
-    ids = [s.id for line in checked.storyboard.lines for s in line.shots]
-    if not ids:
-        stop("this file has no shot", USAGE)
-    if wanted in ids:
-        return wanted
-    if wanted.isdecimal():
-        if 1 <= int(wanted) <= len(ids):
-            return ids[int(wanted) - 1]
-        stop(f"there is no shot {wanted}; the storyboard has {count(len(ids), 'shot')}", USAGE)
-    found = [i for i in ids if wanted.lower() in i.lower()]
-    if len(found) == 1:
-        return found[0]
-    if found:
-        stop(f"`{wanted}` is a part of several shots: {listing(found, last='and')}", USAGE)
-    meant = nearest(wanted, ids)
-    hint = f"did you mean `{meant}`?" if meant else f"shots are {listing(ids, last='and')}"
-    stop(f"there is no shot `{wanted}`; {hint}", USAGE)
 
 
 def _facts(checked: Checked, wanted: str, file: Path, build: Path | None, fresh: bool) -> ShotFacts:
@@ -152,6 +137,8 @@ def _lines(document: dict[str, Any], take: int | None) -> Iterable[str]:
         yield "proposed just now and ordered by geometry; nothing was drawn"
     elif document["stale"]:
         yield "the script has changed since this build; --fresh proposes the shot as it is now"
+    if document["placed"]:
+        yield document["placed"]
     for number, told in enumerate(document["takes"]):
         if number == 0:
             yield from _take(told, document["judge"], document["asked"])

@@ -5,20 +5,23 @@ from __future__ import annotations
 from pathlib import Path
 
 from .page import write_page
+from .plan import write_plans
 from .sheet import write_sheets
 from .storyboard_json import write_storyboard
 from .track_json import write_tracks
 from .types import Build
-from .video import write_animatic
+from .video import WritePart, write_animatic, write_part
 
 
-def write_build(folder: Path, build: Build) -> None:
-    """Write tracks, animatic, sheet, ``storyboard.json`` and page beside the takes already in ``folder``.
+def write_build(folder: Path, build: Build, part_to: WritePart = write_part) -> None:
+    """Write tracks, animatic, sheet, plans, ``storyboard.json`` and page beside the takes in ``folder``.
 
+    part_to: writes those parts of the animatic that are encoded again, or has them from where they were kept
     ``report.json`` is written last by whoever measured the run (:mod:`vdsl.emit.report_json`).
     """
     write_tracks(folder, build)
-    write_animatic(folder / "animatic.mp4", build)
+    write_animatic(folder / "animatic.mp4", build, part_to)
     write_sheets(folder, build)
+    write_plans(folder, build)
     write_page(folder / "index.html", build)
     write_storyboard(folder / "storyboard.json", build)

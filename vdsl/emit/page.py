@@ -1,62 +1,39 @@
 """``index.html``: the storyboard as a page beside its media; no network, no framework.
 
-Everything a writer typed is escaped by the template engine.
+Made from ``storyboard.json`` alone, and the plans that lie beside the takes. Everything a writer typed is
+escaped by the template engine.
 """
 
 from __future__ import annotations
 
-from functools import lru_cache
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
-from urllib.parse import quote
-
-import jinja2
 
 from .folder import write_text
-from .statistics import statistics
+from .page_view import page_view
+from .plan import plan_name
 from .storyboard_json import storyboard_document
-from .timeline import film_frames
+from .templating import rendered
 from .types import Build
-from .words import seconds_words, timecode
 
 
 def write_page(path: Path, build: Build) -> None:
-    """Write the page."""
-    write_text(path, page_html(build))
+    """Write the page of a build into its folder."""
+    write_text(path, page_html(storyboard_document(build), path.parent))
 
 
-def page_html(build: Build) -> str:
-    """The page as text."""
-    board = build.storyboard
-    document = storyboard_document(build)
-    for shot in document["shots"]:
-        shot["length"] = seconds_words(shot["frames"], board.fps)
-        shot["cuts"] = [c.text for c in build.into(shot["id"])]
-        shot["traded"] = next((t.text for t in build.trades if t.shot == shot["id"]), "")
-        shot["timecode"] = timecode(shot["start"], board.fps) if shot["start"] is not None else ""
-    return _template().render(
-        board=document,
-        statistics=statistics(build),
-        length=seconds_words(film_frames(build), board.fps),
-        shown=bool(build.shown),
-        broken=len({c.cut for c in build.continuity}),
-        poster=next((s["takes"][0]["poster"] for s in document["shots"] if s["takes"]), ""),
-    )
+def page_html(document: Mapping[str, Any], folder: Path | None = None) -> str:
+    """The page of a document of schema ``vds.storyboard/1``; folder: where its files lie, for the plans."""
+    plans = {
+        shot["id"]: [_svg(folder, "shots", shot["id"], plan_name(take["rank"])) for take in shot["takes"]]
+        for shot in document["shots"]
+    }
+    scenes = [_svg(folder, "plans", f"{n}.svg") for n in range(1, len(document["scenes"]) + 1)]
+    return rendered("page.html.j2", **page_view(document, plans, scenes))
 
 
-@lru_cache(maxsize=1)
-def _template() -> jinja2.Template:
-    environment = jinja2.Environment(
-        loader=jinja2.FileSystemLoader(Path(__file__).parent),
-        autoescape=True,
-        undefined=jinja2.StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
-    environment.filters["url"] = _url
-    return environment.get_template("index.html.j2")
-
-
-def _url(path: Any) -> str:
-    """A relative path as it stands in a link."""
-    return quote(str(path).encode("utf-8", "replace"))
+def _svg(folder: Path | None, *parts: str) -> str:
+    """A plan that the build has drawn, or ""."""
+    path = folder.joinpath(*parts) if folder else None
+    return path.read_text("utf-8") if path and path.is_file() else ""

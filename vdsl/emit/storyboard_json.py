@@ -37,7 +37,13 @@ def storyboard_document(build: Build) -> dict[str, Any]:
         "source": board.source_name,
         "script": script_digest(board),
         "judge": build.judge,
+        "made_with": dict(build.made_with),
+        "draft": build.draft,
         "characters": [c.name for c in board.characters],
+        "cast": [
+            {"name": c.name, "cast": c.cast, "arguments": numbers(dict(c.arguments))}
+            for c in board.characters
+        ],
         "scenes": [
             {"name": s.name, "set": s.set, "room": ".".join(s.room), "time": s.time} for s in board.scenes
         ],
@@ -70,6 +76,8 @@ def _shot(built: BuiltShot, place: Placed | None) -> dict[str, Any]:
         "camera": {k: taken.get(k, words[0] if len(words) == 1 else None) for k, words in asked.items()},
         "asked": {k: list(words) for k, words in asked.items()},
         "focus": ".".join(shot.focus.path) if shot.focus else None,
+        "focus_to": ".".join(shot.focus_to.path) if shot.focus_to else None,
+        "aperture": shot.aperture,
         "say": shot.say,
         "note": shot.note,
         "enter": {"kind": place.enter, "frames": place.enter_frames} if place else None,
@@ -78,9 +86,11 @@ def _shot(built: BuiltShot, place: Placed | None) -> dict[str, Any]:
         "frames": built.frames,
         "story_proposals": built.story_proposals,
         "camera_proposals": built.camera_proposals,
+        "wanted": shot.proposals,
         "proposals": built.proposals,
         "rejected": dict(sorted(built.rejected.items())),
         "advice": {"why": built.advice.why, "instead": list(built.advice.instead)} if built.advice else None,
+        "depends": built.depends,
         "takes": [_take(shot.id, t) for t in built.takes],
     }
 
@@ -123,6 +133,8 @@ def _take(shot: str, take: BuiltTake) -> dict[str, Any]:
     return {
         "rank": take.rank,
         "proposal": take.camera.index,
+        "key": take.key,
+        "chosen": take.chosen,
         "score": rounded(take.score, MEASURE_DECIMALS),
         "logit": None if take.logit is None else rounded(take.logit, MEASURE_DECIMALS),
         "story": take.camera.story,
@@ -132,7 +144,7 @@ def _take(shot: str, take: BuiltTake) -> dict[str, Any]:
         "angle": take.camera.angle,
         "achieved": asdict(take.achieved),
         "frames": take.media.frames,
-        "video": f"{base}.mp4",
+        "video": None if take.media.sketched else f"{base}.mp4",
         "poster": f"{base}.jpg",
         "track": f"{base}.json",
         "measures": numbers(take.camera.measures),

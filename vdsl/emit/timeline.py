@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from ..lang.ir import Transition
-from .types import Build
+from .types import Build, BuiltShot
 
 #: Transitions in which both shots are seen at once, so that the film gets shorter by their length.
 OVERLAPPING = ("dissolve", "wipe")
@@ -81,6 +81,15 @@ def placed_shots(build: Build) -> tuple[Placed, ...]:
     """Places of the shots that have a take, in order."""
     board, shown = build.storyboard, build.shown
     return place_shots([s.frames for s in shown], [s.transition for s in shown], board.fps, board.ending)
+
+
+def start_of_next(
+    before: Sequence[BuiltShot], transition: Transition, frames: int, fps: tuple[int, int]
+) -> int:
+    """The first frame of a shot of a length, if it came after those that are built so far."""
+    shown = [s for s in before if s.takes]
+    lengths, transitions = [s.frames for s in shown], [s.transition for s in shown]
+    return place_shots([*lengths, frames], [*transitions, transition], fps)[-1].start
 
 
 def film_frames(build: Build) -> int:

@@ -49,6 +49,8 @@ def track_document(take: BuiltTake, shot: str, fps: tuple[int, int], rig: str) -
             "rotation_deg": rows(np.rad2deg(track.rotation)),
             "focal_mm": rows(track.focal),
             "look_at": rows(track.look_at),
+            "focus_m": None if track.focus is None else rows(track.focus),
+            "aperture": rounded(float(track.aperture), TRACK_DECIMALS),
         },
         "subject": None
         if subject is None
@@ -57,5 +59,14 @@ def track_document(take: BuiltTake, shot: str, fps: tuple[int, int], rig: str) -
             "height": rounded(subject.height, TRACK_DECIMALS),
             "position": rows(subject.position),
         },
+        "people": [
+            {
+                "name": walk.name,
+                "position": rows(walk.position),
+                "facing_deg": rows(np.rad2deg(walk.heading)),
+                "head": rows(walk.head),
+            }
+            for walk in take.people
+        ],
         "measures": numbers(camera.measures),
     }

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +16,9 @@ from ..cinema.continuity import Finding
 from ..lang.ir import Shot, Storyboard, StoryLine, Transition
 from ..propose.promise import Achieved
 from ..propose.types import Advice, CameraProposal
+
+if TYPE_CHECKING:
+    from .plan_ground import Ground
 
 CUT = Transition("cut", 0.0)
 
@@ -29,17 +33,32 @@ class Subject:
 
 
 @dataclass(frozen=True, eq=False)
+class Walk:
+    """Where somebody goes in a take. position: float64 [T, 3], on the floor; heading: [T], radians
+
+    head: [T, 3], the base of the head, where the neck ends
+    """
+
+    name: str
+    position: NDArray[np.float64]
+    heading: NDArray[np.float64]
+    head: NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
 class TakeMedia:
     """The pictures of a take, already on disk in the build's folder.
 
     frames: how many the video has
     keys: three frames in order, uint8 [h, w, 3], for the contact sheet; none but for the best take
+    sketched: whether there is no video yet, as in a draft
     """
 
     video: Path
     poster: Path
     frames: int
     keys: tuple[NDArray[np.uint8], ...]
+    sketched: bool = False
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,6 +67,8 @@ class BuiltTake:
 
     achieved: what its track turned out to be
     logit: what the discriminator alone gave it, in log odds; None where it was not asked
+    key: by which it is found again among the same proposals; chosen: whether somebody chose it
+    people: everybody in the scene, and where they go
     """
 
     rank: int
@@ -58,6 +79,9 @@ class BuiltTake:
     media: TakeMedia
     achieved: Achieved
     logit: float | None = None
+    key: str = ""
+    chosen: bool = False
+    people: tuple[Walk, ...] = ()
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,6 +92,7 @@ class BuiltShot:
     story_proposals, camera_proposals, proposals: S, C and how many were judged
     rejected: proposals thrown out before judging, by reason
     advice: where no camera does what the line says, why, and what would
+    depends: digest of what its line depends on
     """
 
     shot: Shot
@@ -80,6 +105,7 @@ class BuiltShot:
     proposals: int
     rejected: dict[str, int]
     advice: Advice | None = None
+    depends: str = ""
 
     @property
     def frames(self) -> int:
@@ -141,6 +167,10 @@ class Build:
 
     continuity: what the cuts between the first takes break, in order; edited: whether the first takes were
     chosen for the sequence; trades: what was given up for it
+    made_with: versions that proposals and pictures go by, as (name, version)
+    draft: whether some takes are stills alone, put in order by geometry, until their films are made
+    grounds: the places of the storyboard's scenes from above, or none where no plans are wanted
+    arrows: whether the contact sheet shows what moves
     """
 
     storyboard: Storyboard
@@ -149,6 +179,10 @@ class Build:
     continuity: tuple[CutFinding, ...] = ()
     edited: bool = False
     trades: tuple[Trade, ...] = ()
+    made_with: tuple[tuple[str, str], ...] = ()
+    draft: bool = False
+    grounds: tuple[Ground, ...] = ()
+    arrows: bool = True
 
     def into(self, shot: str) -> tuple[CutFinding, ...]:
         """What the cut into a shot breaks."""

@@ -8,17 +8,19 @@ from __future__ import annotations
 
 import shutil
 import tempfile
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from pathlib import Path
 
 import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from runtime.video import VideoError, VideoWriter, join_videos, read_video, video_info, write_video
+from runtime.video import VideoError, VideoWriter, join_videos, read_video, write_video
 
 from .burnin import BurnIn, burn
 from .folder import write_bytes
+from .guides import NO_GUIDES, Guides
+from .overlay import guided
 from .timeline import OVERLAPPING, Placed, placed_shots
 from .types import Build, TakeMedia
 
@@ -41,24 +43,28 @@ def write_take(
     count: int,
     fps: tuple[int, int],
     strip: BurnIn | None = None,
+    guides: Guides = NO_GUIDES,
+    keyed: bool = False,
 ) -> TakeMedia:
     """Encode a take and its poster. Only the best take of a shot keeps keyframes: the sheet shows no other.
 
     frames: ``count`` pictures uint8 [H, W, 3]; strip: what to write on every frame, if anything
+    guides: what to draw over every frame; keyed: keep the keyframes of this one whatever its rank
     """
     video, poster, _ = take_paths(folder, shot, rank)
     video.parent.mkdir(parents=True, exist_ok=True)
-    wanted = _key_frames(count)
+    wanted = key_frames(count)
     keys: dict[int, NDArray[np.uint8]] = {}
     writer: VideoWriter | None = None
     try:
         for i, frame in enumerate(frames):
-            picture = burn(frame, strip, i) if strip is not None else frame
+            picture = guided(frame, guides)
+            picture = burn(picture, strip, i) if strip is not None else picture
             if writer is None:
                 writer = VideoWriter(video, (picture.shape[1], picture.shape[0]), fps)
             writer.write(picture)
-            if i in wanted and rank == 1:
-                keys[i] = _reduced(frame)
+            if i in wanted and (keyed or rank == 1):
+                keys[i] = reduced(frame)
             if i == wanted[1]:
                 write_poster(poster, picture)
         if writer is None or writer.frames != count:
@@ -73,16 +79,6 @@ def write_take(
     return TakeMedia(video, poster, count, tuple(keys[i] for i in wanted if i in keys))
 
 
-def read_take(video: Path, poster: Path) -> TakeMedia:
-    """The media of a take written earlier (by a cache, say); decodes it for the keyframes."""
-    _, _, count = video_info(video)
-    wanted = _key_frames(count)
-    keys = {i: _reduced(frame) for i, frame in enumerate(read_video(video)) if i in wanted}
-    if any(i not in keys for i in wanted):
-        raise VideoError(f"cannot read {video}: it ends early")
-    return TakeMedia(video, poster, count, tuple(keys[i] for i in wanted))
-
-
 def write_poster(path: Path, frame: NDArray[np.uint8]) -> None:
     """A JPEG of one frame, uint8 [H, W, 3] sRGB."""
     done, data = cv2.imencode(".jpg", cv2.cvtColor(frame, cv2.COLOR_RGB2BGR), [cv2.IMWRITE_JPEG_QUALITY, 90])
@@ -91,10 +87,22 @@ def write_poster(path: Path, frame: NDArray[np.uint8]) -> None:
     write_bytes(path, data.tobytes())
 
 
-def write_animatic(path: Path, build: Build) -> None:
-    """The best take of every shot, joined as the script says. Writes nothing where no shot has a take."""
+#: Writes shots that are joined by transitions as one film: its path, their films and places, the frame rate.
+WritePart = Callable[[Path, Sequence[tuple[Path, Placed]], tuple[int, int]], object]
+
+
+def write_part(path: Path, shots: Sequence[tuple[Path, Placed]], fps: tuple[int, int]) -> None:
+    """Consecutive shots with their transitions drawn, encoded again."""
+    write_video(path, film_frames_of(shots), fps)
+
+
+def write_animatic(path: Path, build: Build, part_to: WritePart = write_part) -> None:
+    """The best take of every shot, joined as the script says. Writes nothing where no shot has a film.
+
+    part_to: writes what is seen in transitions, or has it from where it was kept
+    """
     shown = build.shown
-    if not shown:
+    if not shown or build.draft:
         return
     fps = build.storyboard.fps
     videos = [s.takes[0].media.video for s in shown]
@@ -107,19 +115,19 @@ def write_animatic(path: Path, build: Build) -> None:
                 parts.append(videos[run[0]])
                 continue
             part = scratch / f"{number}.mp4"
-            write_video(part, film_frames_of([(videos[i], placed[i]) for i in run]), fps)
+            part_to(part, [(videos[i], placed[i]) for i in run], fps)
             parts.append(part)
         try:
             join_videos(path, parts)
         except VideoError as error:
             if error.errno:  # the disk's fault, not the parts'
                 raise
-            write_video(path, film_frames_of(list(zip(videos, placed, strict=True))), fps)
+            write_part(path, list(zip(videos, placed, strict=True)), fps)
     finally:
         shutil.rmtree(scratch, ignore_errors=True)
 
 
-def film_frames_of(shots: list[tuple[Path, Placed]]) -> Iterator[NDArray[np.uint8]]:
+def film_frames_of(shots: Sequence[tuple[Path, Placed]]) -> Iterator[NDArray[np.uint8]]:
     """The frames of consecutive shots with their transitions drawn."""
     tail: list[NDArray[np.uint8]] = []
     for video, place in shots:
@@ -168,11 +176,14 @@ def _untouched(place: Placed) -> bool:
     return place.enter == "cut" and place.leave == "cut"
 
 
-def _key_frames(count: int) -> tuple[int, ...]:
+def key_frames(count: int) -> tuple[int, ...]:
+    """Which frames of a take of a length are its keyframes."""
+    """Where the keyframes of a take of so many frames are."""
     return tuple(round(q * (count - 1)) for q in KEY_MOMENTS)
 
 
-def _reduced(frame: NDArray[np.uint8]) -> NDArray[np.uint8]:
+def reduced(frame: NDArray[np.uint8]) -> NDArray[np.uint8]:
+    """A frame as it is kept for the contact sheet: no wider than that needs."""
     height, width = frame.shape[:2]
     if width <= KEY_WIDTH:
         return frame.copy()

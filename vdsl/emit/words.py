@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from ..lang.ir import Beat, Shot, StoryLine
-from .types import BuiltShot
+
+if TYPE_CHECKING:
+    from .types import BuiltShot
 
 
 def beat_words(beat: Beat) -> str:
@@ -19,6 +23,13 @@ def beat_words(beat: Beat) -> str:
 def line_words(line: StoryLine, scene: str) -> str:
     """What happens, in the script's own words; the scene's name for an establishing shot."""
     return " + ".join(beat_words(b) for b in line.beats) or f"{scene}, establishing"
+
+
+#: What sizes are called in the margin of a storyboard.
+SHORT_SIZES = {
+    "extreme-close-up": "ECU", "big-close-up": "BCU", "close-up": "CU", "medium-close-up": "MCU",
+    "medium": "MS", "cowboy": "CS", "medium-long": "MLS", "full": "FS", "wide": "WS", "extreme-wide": "EWS",
+}  # fmt: skip
 
 
 def asked_words(shot: Shot) -> str:

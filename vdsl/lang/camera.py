@@ -137,7 +137,7 @@ def _longest(flat: list[tuple[str, Span, bool] | ast.Star], start: int) -> int:
         if any(part[2] for part in run[1:] if not isinstance(part, ast.Star)):
             continue
         word = "-".join(part[0] for part in run if not isinstance(part, ast.Star))
-        if words.meaning(word) is not None:
+        if words.meaning(word) is not None or word in words.INSTEAD:
             return size
     return 1
 
@@ -192,7 +192,7 @@ def _unknown(word: str, span: Span, found: dict[str, tuple[str, ...]], report: R
         _no_pair(word, span, report)
         found.setdefault("movement", ())
         return None
-    meant = nearest(word, words.CAMERA_WORDS)
+    meant, told = words.INSTEAD.get(word, (nearest(word, words.CAMERA_WORDS), ""))
     if meant in words.CAMERA_WORDS:
         meaning = words.CAMERA_WORDS[meant]
         canonical = meaning.words[0] if len(meaning.words) == 1 else meant
@@ -202,7 +202,7 @@ def _unknown(word: str, span: Span, found: dict[str, tuple[str, ...]], report: R
             label="the camera does not know this word",
             suggestion=canonical,
             fix=canonical,
-            help=_slot_help(meaning.slot),
+            help=told or _slot_help(meaning.slot),
         )
         found.setdefault(meaning.slot, ())
         return None
@@ -274,7 +274,7 @@ def _no_pair(word: str, span: Span, report: Report) -> None:
 def _slot_help(slot: str) -> str:
     if slot == "movement":
         families = "static, follow, push, pull, zoom, tilt, pan, dolly, pedestal, arc"
-        families += ", crane, roll, dolly-zoom, handheld, whip-pan"
+        families += ", crane, roll, dolly-zoom, handheld, whip-pan, rack-focus"
         return f"movements: {families} (and -in, -out, -up, -down, -left, -right)"
     if slot == "scale":
         return f"scales: {', '.join(ir.SIZES)}"

@@ -27,20 +27,35 @@ from .transitions import Joins
 
 
 def check(
-    script: ast.Script, catalog: CatalogLike, report: Report, overrides: Settings | None = None
+    script: ast.Script,
+    catalog: CatalogLike,
+    report: Report,
+    overrides: Settings | None = None,
+    defaults: Settings | None = None,
 ) -> Storyboard | None:
-    """The checked storyboard, or None where the report has errors. ``overrides`` win over header lines."""
-    checker = _Checker(script, catalog, report, overrides or Settings())
+    """The checked storyboard, or None where the report has errors.
+
+    overrides: win over header lines; defaults: hold where header lines say nothing
+    """
+    checker = _Checker(script, catalog, report, overrides or Settings(), defaults or Settings())
     storyboard = checker.run()
     return None if report.has_errors else storyboard
 
 
 class _Checker:
-    def __init__(self, script: ast.Script, catalog: CatalogLike, report: Report, overrides: Settings) -> None:
+    def __init__(
+        self,
+        script: ast.Script,
+        catalog: CatalogLike,
+        report: Report,
+        overrides: Settings,
+        unsaid: Settings,
+    ) -> None:
         self.script = script
         self.catalog = catalog
         self.report = report
         self.overrides = overrides
+        self.unsaid = unsaid
         self.settings = Settings()
         self.title: ast.Title | None = None
         self.characters: dict[str, Character] = {}
@@ -128,6 +143,7 @@ class _Checker:
                         notes=[(begun.span, "the story begins here")],
                     )
                 read_header(statement, self.settings, self.report)
+        self.settings.complete(self.unsaid)
         said, over = self.settings, self.overrides
         self.fps = over.fps or said.fps or (24, 1)
         self.defaults = Defaults(
@@ -136,6 +152,7 @@ class _Checker:
             over.takes or said.takes or DEFAULT_TAKES,
             over.style or said.style or DEFAULT_STYLE,
             over.rig or said.rig or "cinema",
+            over.aperture if over.aperture is not None else said.aperture or 0.0,
         )
 
     def _statement(self, index: int, statement: ast.Statement) -> None:

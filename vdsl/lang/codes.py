@@ -230,15 +230,15 @@ CODES: dict[str, Code] = {
     ),
     "VDS035": Code(
         "header line out of place",
-        "The header (storyboard, fps, size, aspect, seed, rig, style, takes, proposals) stands before the first "
-        "scene, each of its lines at most once.",
+        "The header (storyboard, fps, size, aspect, seed, rig, style, aperture, takes, proposals) stands before the "
+        "first scene, each of its lines at most once.",
         "fps 24\nfps 25",
         "fps 24",
     ),
     "VDS036": Code(
         "bad value in the header",
         "Each header line takes one kind of value: `fps 24`, `size 1280x720`, `aspect 2.39`, `seed 7`, "
-        "`rig cinema`, `style board`, `takes 5`, `proposals 80`.",
+        "`rig cinema`, `style board`, `takes 5`, `proposals 80`, `aperture 2.8`.",
         "fps 1000",
         "fps 24",
     ),
@@ -318,7 +318,8 @@ CODES: dict[str, Code] = {
     # -- options -----------------------------------------------------------------------------
     "VDS050": Code(
         "unknown option",
-        "Options after a line are separated by commas: lens 50mm, ease slow-in, 4s, roll 12deg, focus NAME, "
+        "Options after a line are separated by commas: lens 50mm, ease slow-in, 4s, roll 12deg, aperture 2.8, "
+        "focus NAME, "
         'say "…", note "…", proposals 80, takes 5, speed brisk, style ink.',
         "(anna walk) lense 50mm",
         "(anna walk) lens 50mm",
@@ -701,6 +702,38 @@ CODES: dict[str, Code] = {
         "/ (static wide eye-level) focus anna\n(anna wave) / (static extreme-close-up eye-level)",
         "/ (static wide eye-level) focus anna\n(anna wave) / (static medium eye-level)",
     ),
+    # -- choices and projects (VDS310-319) -----------------------------------------------------
+    "VDS310": Code(
+        "this lock does not read",
+        "`FILE.lock` holds the takes that were chosen, one line a shot. A line in it is not as `vdsc pick` writes it, "
+        "or two versions of the file were left unmerged. Nothing is compiled and nothing is written over, so that no "
+        "choice is lost.\n\n"
+        "Where two people chose, keep for every shot the line that is wanted. Their order does not matter, nor do "
+        "comments, which begin with `#`.",
+    ),
+    "VDS311": Code(
+        "a chosen take no longer exists",
+        "A choice names a take by how it is acted and filmed. When its line changes, or a line before it that leaves "
+        "people or things elsewhere, other takes are proposed, and the one that was chosen may be none of them. The "
+        "best of the new ones is shown instead. The choice stays in the lock: it holds again when the line is as it "
+        "was.",
+    ),
+    "VDS312": Code(
+        "a choice for a shot that is gone",
+        "The lock has a choice for a shot that is not in the script: its line was removed, or says something else "
+        "now. The choice stays in the lock until it is taken back.",
+    ),
+    "VDS314": Code(
+        "two shots of one name",
+        "A name is a shot's id: its takes are kept under it, and choices hang on it.",
+        "(anna wave) / (static medium) name hello\n(ben wave) / (static medium) name hello",
+        "(anna wave) / (static medium) name hello\n(ben wave) / (static medium) name answer",
+    ),
+    "VDS313": Code(
+        "this project file does not read",
+        "`vds.toml` holds settings for all the scripts beside it and below. A setting in it is not known, or its "
+        "value is none that the setting can have. `docs/watch.md` lists them.",
+    ),
     # -- what opens, and floors at heights (VDS240-259) --------------------------------------
     "VDS240": Code(
         "a part that does not move",
@@ -762,6 +795,28 @@ CODES: dict[str, Code] = {
         "An action out of a file is one motion of it: the first, or the one named with `clip`.",
         'action wave_a = "robot.glb", clip "Wavee"',
         'action wave_a = "robot.glb", clip "Wave"',
+    ),
+    # -- focus -------------------------------------------------------------------------------
+    "VDS300": Code(
+        "only a rack-focus takes the focus elsewhere",
+        "`focus anna to ben` says where the focus goes while the camera runs. That is a movement, which the camera "
+        "has to be told: `rack-focus`, alone or with another (`push+rack-focus`).",
+        "(anna wave) / (static medium eye-level) focus anna to ben",
+        "(anna wave) / (rack-focus medium eye-level) focus anna to ben",
+    ),
+    "VDS301": Code(
+        "a rack-focus needs two that are apart",
+        "The focus goes from whom the camera is about to somebody or something else: the other one of the line, "
+        "unless `focus anna to ben` says whom.",
+        "(anna wave) / (rack-focus medium eye-level)",
+        "(anna wave) / (rack-focus medium eye-level) focus anna to ben",
+    ),
+    # -- pictures with words on them (VDS330-339) ----------------------------------------------
+    "VDS330": Code(
+        "letters that no typeface here has",
+        "Sheets, plans and burn-ins are written in a typeface that comes with the program; it has Latin, Greek and "
+        "Cyrillic. For other scripts a typeface of this machine is taken. Where there is none, empty boxes are "
+        "drawn; films, tracks and the page are not touched by that.",
     ),
 }
 

@@ -2,7 +2,8 @@
 
 An id is a slug of scene, character, action and targets; the camera's words are added where a line
 has several cameras; a number (``--2``) only where two shots would otherwise be the same. Ids are
-lower case, hold no path separators and are short enough for any file system.
+lower case, hold no path separators and are short enough for any file system. A shot that is named has its
+name as id.
 """
 
 from __future__ import annotations
@@ -36,3 +37,11 @@ class Ids:
         base = slug(words)
         self._used[base] = self._used.get(base, 0) + 1
         return base if self._used[base] == 1 else f"{base}--{self._used[base]}"
+
+    def named(self, words: Sequence[str]) -> str | None:
+        """The id of a shot that is named so; None where another has that id."""
+        base = slug(words)
+        if base in self._used:
+            return None
+        self._used[base] = 1
+        return base

@@ -31,7 +31,9 @@ MOVEMENT_FAMILIES: dict[str, tuple[str, ...]] = {
 }
 #: Movements that are proposed where they are said; two of any may be joined, as in ``push+pan-left``.
 FURTHER_MOVEMENTS = ("crane-up", "crane-down", "roll-left", "roll-right", "dolly-zoom-in", "dolly-zoom-out",
-                     "handheld", "whip-pan-left", "whip-pan-right")  # fmt: skip
+                     "handheld", "whip-pan-left", "whip-pan-right", "rack-focus")  # fmt: skip
+#: The movement in which the focus goes from one to another.
+RACK = "rack-focus"
 SCALES = ("close-up", "medium", "full", "wide")
 ANGLES = ("eye-level", "high-angle", "low-angle")
 #: All sizes, from the closest; :data:`SCALES` are those that ``rig paper`` has, and so for the others.
@@ -118,8 +120,11 @@ class Shot:
     focus: the character or object the camera is about; None only where nobody is in the scene
     speed: action speed factor (1 as recorded)
     feelings: what shows on faces, as (character, word of :data:`runtime.motion.feelings.FEELINGS`)
+    focus_to: whom or what the focus goes to, of a ``rack-focus``
+    aperture: f-number of the final frames, 0 where everything is sharp
     view: one of :data:`VIEWS`, or ""; whose: over whose shoulder (``ots``) or through whose eyes (``pov``),
         or who is to be in the picture first (``two-shot``, ``group``)
+    drawn: the id it would have without its name; "" for the same
     """
 
     id: str
@@ -142,6 +147,15 @@ class Shot:
     feelings: tuple[tuple[str, str], ...] = ()
     view: str = ""
     whose: tuple[str, ...] = ()
+    drawn: str = ""
+
+    @property
+    def drawn_as(self) -> str:
+        """By what its cameras and performances are drawn at random: not by its name."""
+        return self.drawn or self.id
+
+    focus_to: Target | None = None
+    aperture: float = 0.0
 
 
 @dataclass(frozen=True)

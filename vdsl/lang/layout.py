@@ -21,7 +21,7 @@ DEEPEST = 40
 _PIECE = re.compile(r'"(?:[^"\\\n]|\\[^\n])*"?|\#[^\n]*|[(){};\n]|[^"\#(){};\n]+')
 _STORY_START = re.compile(
     r"[ \t]*(?:[(/\n\r]|$|(?:storyboard|character|scene|use|set|prop|cast|action|cut|dissolve|fade-in"
-    r"|fade-out|wipe|fps|size|aspect|seed|rig|style|takes|proposals)\b(?!-))|[^\W\d][\w-]*[ \t]+at\b"
+    r"|fade-out|wipe|fps|size|aspect|seed|rig|style|takes|proposals|aperture)\b(?!-))|[^\W\d][\w-]*[ \t]+at\b"
 )
 
 

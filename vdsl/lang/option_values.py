@@ -6,6 +6,7 @@ A reader returns None where the value is not of its kind, which is then in the r
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Callable
 
 from . import ast, words
@@ -13,6 +14,8 @@ from .diagnostics import Report, listing, nearest
 
 SHORTEST_LENS, LONGEST_LENS = 8.0, 400.0
 LONGEST_SHOT = 120.0
+WIDEST_APERTURE, SMALLEST_APERTURE = 0.7, 64.0
+_F_NUMBER = re.compile(r"f?(\d+(?:\.\d+)?)")
 
 
 def read_lens(value: ast.Value, fps: tuple[int, int], report: Report) -> tuple[float, float] | None:
@@ -131,11 +134,46 @@ def read_roll(value: ast.Value, fps: tuple[int, int], report: Report) -> float |
     return math.radians(value.value)
 
 
-def read_focus(value: ast.Value, fps: tuple[int, int], report: Report) -> ast.Name | None:
-    """The name of what is sharp."""
+def read_aperture(value: ast.Value, fps: tuple[int, int], report: Report) -> float | None:
+    """``1.8``, ``f1.8`` or ``off`` as an f-number, 0 where everything is sharp."""
+    if isinstance(value, ast.Name) and words.fold(value.text) in ("off", "none"):
+        return 0.0
+    said = _F_NUMBER.fullmatch(value.span.text.casefold()) if isinstance(value, ast.Name) else None
+    if isinstance(value, ast.Number) and value.unit is not None:
+        fix = f"{value.value:g}"
+        report.error(
+            "VDS053", value.span, label="an aperture is a bare f-number", help=f"write {fix}", fix=fix
+        )
+        return None
+    if not isinstance(value, ast.Number) and said is None:
+        report.error(
+            "VDS055",
+            value.span,
+            label="an f-number is wanted here",
+            help="as in `aperture 1.8`: the smaller, the less is sharp; `aperture off` keeps all sharp",
+        )
+        return None
+    number = value.value if isinstance(value, ast.Number) else float(said[1] if said else 0)
+    if WIDEST_APERTURE <= number <= SMALLEST_APERTURE:
+        return number
+    fix = "off" if number == 0 else f"{WIDEST_APERTURE if number < 1 else SMALLEST_APERTURE:g}"
+    report.error(
+        "VDS054",
+        value.span,
+        label=f"no lens stands at f/{number:g}",
+        help=f"f-numbers go from {WIDEST_APERTURE:g} to {SMALLEST_APERTURE:g}; `off` keeps all sharp",
+        suggestion=fix,
+        fix=fix,
+    )
+    return None
+
+
+def read_name(value: ast.Value, fps: tuple[int, int], report: Report) -> ast.Name | None:
+    """A name, as one word."""
     if isinstance(value, ast.Name):
         return value
-    report_no_value(value, "a name", "focus anna", report)
+    fix = "-".join(value.value.split()) if isinstance(value, ast.Text) else None
+    report.error("VDS055", value.span, label="a name is wanted here", help="as in `name opening`", fix=fix)
     return None
 
 

@@ -15,10 +15,11 @@ from .diagnostics import Report, listing, nearest
 from .option_values import (
     choose,
     count_reader,
+    read_aperture,
     read_duration,
     read_ease,
-    read_focus,
     read_lens,
+    read_name,
     read_roll,
     read_speed,
     read_style,
@@ -39,8 +40,11 @@ class ShotOptions:
     duration: float | None = None
     roll: float | None = None
     focus: ast.Name | None = None
+    focus_to: ast.Name | None = None
+    aperture: float | None = None
     say: str | None = None
     note: str | None = None
+    name: ast.Name | None = None
     proposals: int | None = None
     takes: int | None = None
     speed: float | None = None
@@ -58,7 +62,7 @@ def read_options(options: tuple[ast.Option, ...], fps: tuple[int, int], report: 
             _feeling(option, found, report)
             continue
         reader = _READERS.get(name)
-        if reader is None:
+        if reader is None and name != "focus":
             _unknown(option, report)
             continue
         if name in seen:
@@ -70,9 +74,13 @@ def read_options(options: tuple[ast.Option, ...], fps: tuple[int, int], report: 
             )
             continue
         seen[name] = option
+        if name == "focus":
+            _focus(option, found, report)
+            continue
         if len(option.values) != 1:
             _wrong_count(option, name, report)
             continue
+        assert reader is not None
         value = reader(option.values[0], fps, report)
         if value is not None:
             setattr(found, name, value)
@@ -105,6 +113,34 @@ def _feeling(option: ast.Option, found: ShotOptions, report: Report) -> None:
     found.feelings.append((who, word))
 
 
+def _focus(option: ast.Option, found: ShotOptions, report: Report) -> None:
+    """``focus anna``, or ``focus anna to ben`` of a rack-focus; ``from`` may stand before."""
+    values = list(option.values)
+    if len(values) > 1 and _is_word(values[0], "from"):
+        del values[0]
+    if not values:
+        _wrong_count(option, "focus", report)
+        return
+    racks = len(values) == 3 and _is_word(values[1], "to")
+    if len(values) > 1 and not racks:
+        report.error(
+            "VDS052",
+            values[1].span,
+            label="`focus` takes one name, or two with `to` between",
+            help="as in `focus anna`, or `focus anna to ben` of a rack-focus",
+        )
+    names = [values[0], values[2] if racks else values[1]] if len(values) > 1 else values
+    for value in names:
+        if not isinstance(value, ast.Name):
+            report_no_value(value, "a name", _EXAMPLES["focus"], report)
+            return
+    found.focus, found.focus_to = [*(name for name in names if isinstance(name, ast.Name)), None][:2]
+
+
+def _is_word(value: ast.Value, word: str) -> bool:
+    return isinstance(value, ast.Name) and words.fold(value.text) == word
+
+
 def _unknown(option: ast.Option, report: Report) -> None:
     name = option.name.text
     folded = words.fold(name)
@@ -116,7 +152,7 @@ def _unknown(option: ast.Option, report: Report) -> None:
             help="camera words stand in parentheses after the slash: `/ (static close-up eye-level)`",
         )
         return
-    known = (*_READERS, "feeling")
+    known = (*_READERS, "focus", "feeling")
     meant = nearest(name, known)
     report.error(
         "VDS050",
@@ -137,11 +173,15 @@ def _wrong_count(option: ast.Option, name: str, report: Report) -> None:
     report.error("VDS052", extra.span, label=f"`{name}` takes one value", help=_repair(extra, example))
 
 
+def _is_option(value: ast.Value) -> bool:
+    return isinstance(value, ast.Name) and words.fold(value.text) in (*_READERS, "focus")
+
+
 def _repair(extra: ast.Value, example: str) -> str:
     """How a second value was probably meant."""
     if isinstance(extra, ast.Number) and extra.value < 0:
         return "a range has two dots, as in `lens 35..85mm`"
-    if isinstance(extra, ast.Number) or (isinstance(extra, ast.Name) and words.fold(extra.text) in _READERS):
+    if isinstance(extra, ast.Number) or _is_option(extra):
         return f"put a comma before `{extra.span.text}`"
     return f"as in `{example}`"
 
@@ -151,9 +191,10 @@ _READERS: dict[str, Callable[[ast.Value, tuple[int, int], Report], object]] = {
     "ease": read_ease,
     "duration": read_duration,
     "roll": read_roll,
-    "focus": read_focus,
+    "aperture": read_aperture,
     "say": read_text,
     "note": read_text,
+    "name": read_name,
     "proposals": count_reader(MOST_PROPOSALS, "proposals 80"),
     "takes": count_reader(MOST_TAKES, "takes 5"),
     "speed": read_speed,
@@ -161,7 +202,8 @@ _READERS: dict[str, Callable[[ast.Value, tuple[int, int], Report], object]] = {
 }
 _EXAMPLES = {
     "lens": "lens 50mm", "ease": "ease slow-in", "duration": "4s", "roll": "roll 12deg",
-    "focus": "focus anna",
-    "say": 'say "Hello."', "note": 'note "late light"', "proposals": "proposals 80", "takes": "takes 5",
+    "aperture": "aperture 1.8", "focus": "focus anna",
+    "say": 'say "Hello."', "note": 'note "late light"', "name": "name opening",
+    "proposals": "proposals 80", "takes": "takes 5",
     "speed": "speed brisk", "style": "style ink",
 }  # fmt: skip

@@ -27,7 +27,7 @@ _FIRST_WORD = re.compile(r"[^\W\d][\w-]*")
 _FIRST_WORDS = re.compile(r"([^\W\d][\w-]*)(?:[ \t]+\"?([^\W\d][\w-]*))?")
 #: A definition whose body is another program's file.
 _FROM_FILE = re.compile(r"[a-z]+[ \t]+[^({=]*=")
-_HEADERS = ("fps", "size", "aspect", "seed", "rig", "style", "takes", "proposals")
+_HEADERS = ("fps", "size", "aspect", "seed", "rig", "style", "takes", "proposals", "aperture")
 _TRANSITIONS = ("cut", "dissolve", "fade-out", "fade-in", "wipe")
 _KINDS = ("set", "prop", "cast", "action")
 #: The start rule for a line beginning with this word; anything else is a placement.

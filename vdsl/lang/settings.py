@@ -1,4 +1,4 @@
-"""Header lines: frame rate, picture size, seed, rig, style, takes and proposals."""
+"""Header lines: frame rate, picture size, seed, rig, style, aperture, takes and proposals."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from fractions import Fraction
 
 from . import ast, words
 from .diagnostics import Report, listing, nearest
-from .option_values import read_count
+from .option_values import read_aperture, read_count
 from .options import MOST_PROPOSALS, MOST_TAKES
 
 #: Frame rates that are written rounded and meant exactly.
@@ -34,6 +34,14 @@ class Settings:
     style: str | None = None
     takes: int | None = None
     proposals: int | None = None
+    aperture: float | None = None
+
+    def complete(self, others: Settings) -> None:
+        """Take from others what was not said here; a picture's size and shape go together."""
+        shaped = self.size is not None or self.aspect is not None
+        for name, value in vars(others).items():
+            if getattr(self, name) is None and not (shaped and name in ("size", "aspect")):
+                setattr(self, name, value)
 
     def final_size(self) -> tuple[int, int]:
         """The picture's even width and height; ``aspect`` changes the height."""
@@ -62,6 +70,8 @@ def read_header(line: ast.Header, settings: Settings, report: Report) -> None:
         settings.takes = read_count(value, MOST_TAKES, "takes 5", report)
     elif name == "proposals":
         settings.proposals = read_count(value, MOST_PROPOSALS, "proposals 80", report)
+    elif name == "aperture":
+        settings.aperture = read_aperture(value, (24, 1), report)
     else:
         _word(line, settings, words.RIGS if name == "rig" else words.STYLES, report)
 

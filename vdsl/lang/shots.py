@@ -10,7 +10,7 @@ from .beats import unknown_character
 from .camera import FREE, CameraWords, read_camera
 from .diagnostics import Report
 from .ids import Ids
-from .ir import MOVEMENT_FAMILIES, Beat, Shot, Target
+from .ir import MOVEMENT_FAMILIES, RACK, Beat, Shot, Target
 from .options import ShotOptions, read_options
 from .views import read_view
 
@@ -29,6 +29,7 @@ class Defaults:
     takes: int
     style: str
     rig: str = "cinema"
+    aperture: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -57,16 +58,76 @@ def read_shots(
         said = read_camera(camera, defaults.rig, report)
         own = read_options(camera.options, defaults.fps, report) if camera else ShotOptions()
         said = _fitting(camera, said, not node.beats, report)
+        pair = own if own.focus is not None else shared
+        if pair.focus_to is not None and "movement" not in said.said:
+            said = replace(said, movements=(RACK,))
         view = read_view(camera, said, own.focus or shared.focus, context, report)
         said = view.words
         base = _line_words(context)
+        given = len(base)
         if len(cameras) > 1:
             base = [*base, *_camera_words(said)]
         feelings = _feelings(shared, context, node, report) | _feelings(own, context, node, report)
         shot = _shot(ids.take(base), node, camera, said, own, shared, context, defaults)
+        shot = _named(shot, own.name or shared.name, [] if own.name else base[given:], ids, report)
         shot = replace(shot, focus=view.focus or shot.focus, view=said.view, whose=view.whose)
+        shot = replace(shot, focus_to=_racked(camera, shot, pair, context, report))
         shots.append(replace(shot, feelings=tuple(feelings.items())))
     return tuple(shots)
+
+
+def _racked(
+    camera: ast.CameraNode | None, shot: Shot, options: ShotOptions, context: LineContext, report: Report
+) -> Target | None:
+    """Whom or what the focus goes to: as said, else the other one of the line."""
+    said = options.focus_to
+    if camera is None or not any(RACK in movement.split("+") for movement in shot.movements):
+        if said is not None:
+            report.error(
+                "VDS300",
+                said.span,
+                label="the focus stays where it is in this movement",
+                help="say `rack-focus` in the parentheses, or `push+rack-focus` with another movement",
+            )
+        return None
+    target = context.resolve(said) if said is not None else _other(shot, context)
+    if target is None and said is None:
+        report.error(
+            "VDS301",
+            camera.span,
+            label="the focus goes to whom or what?",
+            help="say `focus NAME to NAME` after the camera",
+        )
+    if target is not None and shot.focus is not None and target.path == shot.focus.path:
+        report.error(
+            "VDS301",
+            said.span if said is not None else camera.span,
+            label="the focus is there from the beginning",
+            help="a rack-focus goes from one to another, as in `focus anna to ben`",
+        )
+        return None
+    return target
+
+
+def _other(shot: Shot, context: LineContext) -> Target | None:
+    """Who takes part in a line besides its focus, else what it is done with."""
+    own = shot.focus.path if shot.focus is not None else ()
+    people = [Target("character", (beat.character,), beat.character, beat.span) for beat in context.beats]
+    targets = [t for beat in context.beats for t in (beat.target, beat.second) if t is not None]
+    targets.sort(key=lambda target: target.kind != "character")
+    return next((t for t in (*people, *targets) if t.path != own), None)
+
+
+def _named(shot: Shot, name: ast.Name | None, camera: Sequence[str], ids: Ids, report: Report) -> Shot:
+    """A shot under the name it was given; cameras of one line that is named are told apart by their words."""
+    if name is None:
+        return shot
+    found = ids.named([name.text, *camera])
+    if found is None:
+        label = f"another shot is called `{name.text}`"
+        report.error("VDS314", name.span, label=label, help="give each its own name")
+        return shot
+    return replace(shot, id=found, drawn=shot.id)
 
 
 def _fitting(
@@ -121,6 +182,7 @@ def _shot(
         takes=own.takes or shared.takes or defaults.takes,
         speed=own.speed or shared.speed or 1.0,
         style=own.style or shared.style or defaults.style,
+        aperture=next((a for a in (own.aperture, shared.aperture) if a is not None), defaults.aperture),
         span=span,
     )
 

@@ -18,7 +18,7 @@ from .source import Span
 
 FORMS: dict[str, str] = {
     "storyboard": 'storyboard "Morning coffee"',
-    "header": "fps 24, size 1280x720, aspect 2.39, seed 7, rig cinema, style board, takes 5 or proposals 80",
+    "header": "fps 24, size 1280x720, aspect 2.39, seed 7, rig cinema, style board, takes 5, proposals 80 or aperture 2.8",
     "use": 'use "common.vds"',
     "character": "character anna = woman(height 1.68m)",
     "scene": "scene kitchen = apartment.kitchen at dusk",
@@ -54,6 +54,14 @@ _STORY = ("story", "cameras")
 _N = r"[^\W\d][\w.-]*"
 
 RULES: tuple[Rule, ...] = (
+    # names of cameras with signs in them
+    Rule("/ (static bird's eye)", "bird's eye", _STORY, r"/\s*\([^)]*?((?:bird|god)['’]s\s+eye(?:\s+view)?)", "this is one word",
+         "say `overhead` or `birds-eye`", "overhead"),
+    Rule("/ (static worm's eye)", "worm's eye", _STORY, r"/\s*\([^)]*?(worm['’]s\s+eye(?:\s+view)?)", "this is one word",
+         "say `worms-eye`", "worms-eye"),
+    Rule("/ (static medium 2-shot)", "2-shot", _STORY, r"/\s*\([^)]*?(?<!\w)(2[ -]?shot)\b", "this is spelt out", "say `two-shot`", "two-shot"),
+    Rule("/ (360 medium)", "360", _STORY, r"/\s*\([^)]*?(?<!\w)(360(?:-shot)?)(?![\w.])", "no numbers inside the parentheses",
+         "round somebody goes `arc`, `arc-left` or `arc-right`", "arc"),
     # signs no line has
     Rule("(anna wave) say “Hello.”", "“", (), r"([“”„«»])", "texts have straight quotes", 'use `"`', '"'),
     Rule("(anna wave) 4 s", "4 s", (), r"(?<![\w.-])(\d[\d.]*[ \t]+(?:mm|cm|m|deg|s|f))\b(?![\w-])", "the unit follows the number without a space",
@@ -197,7 +205,7 @@ def _last_resort(error: UnexpectedInput, line: Span) -> tuple[Span, str]:
 
 STATEMENT_WORDS = ("storyboard", "character", "scene", "use", "set", "prop", "cast", "action", "cut", "dissolve",
                    "fade-out", "fade-in", "wipe", "fps", "size", "aspect", "seed", "rig", "style", "takes",
-                   "proposals")  # fmt: skip
+                   "proposals", "aperture")  # fmt: skip
 
 
 def unknown_statement(line: Span, word: str | None, report: Report) -> None:

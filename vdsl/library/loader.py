@@ -25,6 +25,9 @@ KINDS = ("set", "prop", "cast", "action")
 LIBRARY = Path(__file__).parent
 FOLDERS = {"set": "sets", "prop": "props", "cast": "cast", "action": "actions"}
 
+#: What models in several files consist of besides.
+_BESIDE = frozenset({".bin", ".mtl", ".png", ".jpg", ".jpeg", ".webp"})
+_NAME = re.compile(r"[^\W\d][\w-]*")
 _HEAD = re.compile(r"^[ \t\ufeff]*(set|prop|cast|action)[ \t]+([^\W\d][\w-]*)", re.MULTILINE)
 
 
@@ -93,6 +96,32 @@ class Catalog:
             return None
         return (*(one.span.text for one in own), self._digest(kind))
 
+    def reached(self, names: Iterable[str]) -> tuple[str, ...]:
+        """What decides about definitions that names lead to, as far as it is the script's own: the texts of
+        those definitions, and digests of other programs' files. A definition leads to what its text names.
+        """
+        if not self._own:
+            return ()
+        found: dict[tuple[str, str], str] = {}
+        todo, seen = list(names), set[str]()
+        while todo:
+            name = todo.pop()
+            if name in seen:
+                continue
+            seen.add(name)
+            for kind in KINDS:
+                own = self._own.get((kind, name))
+                if own is not None:
+                    found[kind, name] = f"{kind} {name}\0{own.span.text}"
+                    if isinstance(own, ast.FileDefinition):
+                        folder = Path(own.span.source.name).parent
+                        found[kind, name] += "\0" + _file_digest(folder / own.path.value)
+                    todo += _NAME.findall(own.span.text)
+                elif name in (listed := self._scan(kind)):
+                    source, start, end = listed[name]
+                    todo += _NAME.findall(source.text, start, end)
+        return tuple(found[key] for key in sorted(found))
+
     def _digest(self, kind: str) -> str:
         """Of the library's files of a kind."""
         if kind not in self._digests:
@@ -100,6 +129,14 @@ class Catalog:
             told = "\0".join(part for name in sorted(sources) for part in (Path(name).name, sources[name]))
             self._digests[kind] = hashlib.sha256(told.encode()).hexdigest()
         return self._digests[kind]
+
+    def paths(self) -> tuple[Path, ...]:
+        """The files that the script's definitions are in, or are made of."""
+        found = {Path(one.span.source.name): None for one in self._own.values()}
+        for one in self._own.values():
+            if isinstance(one, ast.FileDefinition):
+                found[Path(one.span.source.name).parent / one.path.value] = None
+        return tuple(found)
 
     def files(self) -> Iterator[FileDef]:
         """The script's definitions out of other programs' files."""
@@ -161,6 +198,20 @@ class Catalog:
             return None
         source, start, end = found
         return parse_definition(source, kind, name, self.report, start, end)
+
+
+def _file_digest(path: Path) -> str:
+    """Of a file and, as it may draw on them, the sizes and times of those beside and below it."""
+    told = hashlib.sha256()
+    try:
+        told.update(path.read_bytes())
+        if path.suffix.lower() in (".gltf", ".obj"):
+            for other in sorted(p for p in path.parent.rglob("*") if p.suffix.lower() in _BESIDE):
+                about = other.stat()
+                told.update(f"\0{other.name} {about.st_size} {about.st_mtime_ns}".encode("utf-8", "replace"))
+    except OSError as error:
+        told.update(str(error.errno).encode())
+    return told.hexdigest()
 
 
 def _reader(kind: str) -> Callable[[ast.Definition, Report], DefinitionBase | None]:

@@ -1,50 +1,56 @@
 """The whole job: a ``.vds`` file in, ranked moving shots out.
 
 The order of the passes is the order of :func:`compile_file`. Assumes nothing of the file; guarantees
-that a script with errors writes nothing, and that a build folder holds a whole result or the last one.
+that a script with errors writes nothing, that a build folder holds a whole result or the last one, and that
+what earlier runs kept gives the same build as making everything anew.
 """
 
 from __future__ import annotations
 
 import resource
 import sys
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+from functools import partial
 from pathlib import Path
 from time import perf_counter
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..emit.build import write_build
-from ..emit.burnin import BurnIn
 from ..emit.folder import staged_build
+from ..emit.plan_ground import Ground, ground_of
 from ..emit.report_json import write_report
-from ..emit.types import CUT, Build, BuiltShot, BuiltTake, RunReport, Stage, Subject, TakeMedia
-from ..emit.video import write_take
-from ..lang import Report, Source, Span
+from ..emit.timeline import start_of_next
+from ..emit.types import CUT, Build, BuiltShot, BuiltTake, RunReport, Stage
+from ..lang import Report, Settings, Source, Span
 from ..lang.diagnostics import listing
-from ..lang.ir import Shot, Storyboard, StoryLine
-from ..propose.cameras import Filming, subject_of
+from ..lang.ir import Shot, StoryLine, Transition
+from ..propose.cameras import subject_of
 from ..propose.promise import achieved
-from ..propose.state import SceneState, opening_state
-from ..propose.story import advance, propose
-from ..propose.types import CameraProposal, ProposalGrid, StoryProposal
-from ..stage.assemble import StagedScene
-from ..stage.models import check_models
-from .edit import CANDIDATES, Edited, Reel, candidates, cut_findings, edited
+from ..propose.story import propose
+from .acts import Act, Acts, Warm, stage_acts
+from .cache import Cache
+from .chosen import Choices, find_again, made_with
+from .depends import digest, shot_digests
+from .edit import Edited, Reel, cut_findings, edited
 from .filming import Camerawork
 from .judging import DiscriminatorJudge, GeometryJudge, Judge
+from .keys import code_digest, judge_digest
+from .letters import warn_of_letters
+from .lock import Choice, lock_path, read_lock
 from .options import Options
+from .packing import PackError, pack, unpack
+from .parts import kept_parts
+from .placing import find
 from .progress import Progress, Silence, StageClock
+from .project import project_of
 from .script import Checked, ScriptError, load_storyboard
-from .selection import choose_takes
-from .staging import Stagehand
-from .witness import Vetted, vet
+from .shooting import UNITS, Judged, Kept, Run, Shooting
+from .tasting import taste_of
+from .turns import one_at_a_time
 
-#: Proposals drawn and judged at a time: bounds memory, and lets progress be seen.
-_JUDGED_AT_ONCE = 16
-_UNITS = {"stage": "lines", "propose": "proposals", "draw": "frames", "rank": "shots", "film": "frames"}
+__all__ = ["Act", "Result", "Workshop", "compile_file", "peak_mib", "stage_acts"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,14 +63,26 @@ class Result:
     report: RunReport
 
 
-@dataclass(frozen=True, eq=False)
-class Act:
-    """A story line with the scene it plays in and the state it starts from."""
+@dataclass(eq=False)
+class Workshop:
+    """What a process keeps ready from one compilation to the next: renderers, the judge, staged scenes."""
 
-    line: StoryLine
-    staged: StagedScene
-    filming: Filming
-    state: SceneState
+    warm: Warm = field(default_factory=Warm)
+    _cameras: dict[str, Camerawork] = field(default_factory=dict)
+    _judges: dict[tuple[str, str], Judge] = field(default_factory=dict)
+
+    def camerawork(self, device: str) -> Camerawork:
+        return self._cameras.setdefault(device, Camerawork(device))
+
+    def judge(self, options: Options, clock: StageClock) -> Judge:
+        """Loaded when somebody first has to judge. Raises :class:`ranker.RankerError`."""
+        if options.rank == "geometry":
+            return GeometryJudge()
+        key = (judge_digest(options), options.device)
+        if key not in self._judges:
+            with clock.spent("load", 1, quiet=True):
+                self._judges[key] = DiscriminatorJudge(options.weights, options.device, options.taste)
+        return self._judges[key]
 
 
 def compile_file(
@@ -72,39 +90,85 @@ def compile_file(
     out: str | Path | None = None,
     options: Options | None = None,
     progress: Progress | None = None,
+    workshop: Workshop | None = None,
+    finish: Callable[[Path, Result], None] = lambda stage, result: None,
 ) -> Result:
     """Compile a script into a build folder (default ``build/<name>``).
 
-    Raises :class:`~vdsl.pipeline.script.ScriptError` for a script with errors, OSError for a disk that
-    refuses, :class:`ranker.RankerError` for weights that cannot be used.
+    workshop: kept from compilations before; finish: called with the whole build before it is put in its place
+    Raises :class:`~vdsl.pipeline.script.ScriptError` for a script or a lock with errors, OSError for a disk
+    that refuses, :class:`ranker.RankerError` for weights that cannot be used.
     """
     started = perf_counter()
-    options = options or Options()
+    path, workshop = Path(path), workshop or Workshop()
+    options = with_taste(options or Options(), path)
     clock = StageClock(progress or Silence())
-    path = Path(path)
     folder = Path(out) if out is not None else Path("build") / path.stem
+    cache = Cache(kept=options.cache)
     with clock.spent("check", 1, quiet=True):
-        checked = _with_something_to_film(load_storyboard(path, options.settings))
-    with staged_build(folder) as staging:
-        acts = _stage_all(checked, clock)
-        build = _film_all(checked.storyboard, acts, _judge(options, clock), options, staging, clock)
+        checked, choices = _checked(path, options)
+        warn_of_letters(checked.storyboard, checked.report)
+    with staged_build(folder, one_at_a_time) as staging:
+        acts = _played(checked, cache, workshop, clock)
+        run = Run(
+            checked.storyboard,
+            options,
+            staging,
+            acts,
+            cache,
+            workshop.camerawork(options.device),
+            partial(workshop.judge, options, clock),
+            clock,
+        )
+        build = _Filming(run, choices).build()
         _warn_of_poor_shots(build.shots, checked.report)
         with clock.spent("write", len(build.shots), quiet=True):
-            write_build(staging, build)
-        report = _report(perf_counter() - started, clock, options, tuple(t.text for t in build.trades))
+            write_build(staging, build, kept_parts(cache))
+        report = _report(perf_counter() - started, clock, run, tuple(t.text for t in build.trades))
         write_report(staging / "report.json", report)
-    return Result(folder, build, checked.report, report)
+        result = Result(folder, build, checked.report, report)
+        finish(staging, result)
+    cache.tidy()
+    return result
 
 
-def _stage_all(checked: Checked, clock: StageClock) -> list[Act]:
-    lines = len(checked.storyboard.lines)
-    clock.begin("stage", lines, _UNITS["stage"])
-    with clock.spent("stage", lines, quiet=True):
-        return stage_acts(checked, played=lambda seconds: clock.watcher.advance("stage", 1, seconds))
+def prepare(path: Path, options: Options, workshop: Workshop) -> None:
+    """Have ready what compiling a changed script takes: its scenes, a renderer, the judge.
+
+    Raises what :func:`compile_file` raises.
+    """
+    clock = StageClock(Silence())
+    options = with_taste(options, path)
+    checked, _ = _checked(path, options)
+    acts = _played(checked, Cache(kept=options.cache), workshop, clock)
+    camerawork = workshop.camerawork(options.device)
+    for line in checked.storyboard.lines:
+        act = acts.act(line)
+        for shot in line.shots[:1]:
+            grid = propose(line, replace(shot, proposals=1), act.state, act.filming)
+            for camera in grid.cameras[:1]:
+                story = next(s for s in grid.story if s.index == camera.story)
+                at = np.zeros(1, np.int64)
+                camerawork.frames_at(act.staged, shot.style, story, camera, checked.storyboard.size, at)
+                camerawork.judge_ids(act.staged, shot.style, grid.story, (camera,), (96, 54))
+                achieved(camera, subject_of(shot, story, act.filming), act.filming.rig)
+        break
+    workshop.judge(options, clock)
 
 
-def _with_something_to_film(checked: Checked) -> Checked:
-    """The storyboard, or ScriptError where there is no line in it."""
+def with_taste(options: Options, script: Path) -> Options:
+    """The options with the taste found with a script, where none is given and pictures are judged."""
+    if options.taste is not None or options.rank == "geometry":
+        return options
+    return replace(options, taste=taste_of(script))
+
+
+def _checked(path: Path, options: Options) -> tuple[Checked, Choices]:
+    """The storyboard and what is chosen for it; ScriptError where there is no line in it."""
+    lock = read_lock(lock_path(path))
+    defaults = project_of(path).settings
+    defaults.complete(Settings(seed=lock.seed))
+    checked = load_storyboard(path, options.settings, defaults)
     if not checked.storyboard.lines:
         checked.report.error(
             "VDS191",
@@ -113,210 +177,195 @@ def _with_something_to_film(checked: Checked) -> Checked:
             help="add a scene and a line such as `(anna wave)`",
         )
         raise ScriptError(checked.report)
-    return checked
+    depends = shot_digests(checked.storyboard, checked.catalog)
+    return checked, Choices(lock, depends, checked.report)
 
 
-def stage_acts(
-    checked: Checked, hand: Stagehand | None = None, played: Callable[[float], None] = lambda seconds: None
-) -> list[Act]:
-    """Every line in its scene with its opening state. Raises ScriptError for what cannot be played.
-
-    hand: one that has built sets and bodies before; played: told of every line, with the seconds it took
-    """
-    storyboard, report = checked.storyboard, checked.report
-    check_models(checked.catalog, report)
-    if report.has_errors:
-        raise ScriptError(report)
-    hand = hand or Stagehand(checked.catalog)
-    acts: list[Act] = []
-    for number, scene in enumerate(storyboard.scenes):
-        lines = [line for line in storyboard.lines if line.scene == number]
-        if not lines:
-            continue
-        staged = hand.stage(scene, storyboard.characters, lines)
-        skeletons = {name: body.skeleton for name, body in staged.bodies.items()}
-        filming = Filming(
-            staged.world,
-            skeletons,
-            storyboard.fps[0] / storyboard.fps[1],
-            storyboard.seed,
-            storyboard.rig,
-            storyboard.size[0] / storyboard.size[1],
-            scene.room,
-            checked.catalog,
+def _played(checked: Checked, cache: Cache, workshop: Workshop, clock: StageClock) -> Acts:
+    lines = len(checked.storyboard.lines)
+    clock.begin("stage", lines, UNITS["stage"])
+    with clock.spent("stage", lines, quiet=True):
+        acts = Acts(
+            checked,
+            cache,
+            code_digest(),
+            warm=workshop.warm,
+            played=lambda seconds: clock.watcher.advance("stage", 1, seconds),
         )
-        state = opening_state(scene, staged.world, skeletons, report)
-        for line in lines:
-            begun = perf_counter()
-            acts.append(Act(line, staged, filming, state))
-            state = advance(state, line, checked.catalog, filming, report)
-            played(perf_counter() - begun)
-    if report.has_errors:
-        raise ScriptError(report)
-    order = {id(line): i for i, line in enumerate(storyboard.lines)}
-    return sorted(acts, key=lambda act: order[id(act.line)])
+        acts.play()
+    return acts
 
 
-def _judge(options: Options, clock: StageClock) -> Judge:
-    if options.rank == "geometry":
-        return GeometryJudge()
-    with clock.spent("load", 1, quiet=True):
-        return DiscriminatorJudge(options.weights, options.device)
+class _Filming:
+    """Judges and films all shots in their order."""
 
+    def __init__(self, run: Run, choices: Choices) -> None:
+        self.run, self.choices = run, choices
+        self.crew = Shooting(run)
+        self._quick: Shooting | None = None
+        if run.options.draft:
+            quick = replace(run.options, rank="geometry", edit=False)
+            self._quick = Shooting(replace(run, options=quick, judge=GeometryJudge))
 
-def _film_all(
-    storyboard: Storyboard, acts: list[Act], judge: Judge, options: Options, folder: Path, clock: StageClock
-) -> Build:
-    """Propose, judge and film every shot, in order; one line's proposals are in memory at a time."""
-    camerawork = Camerawork(options.device)
-    plan = _edit(acts, judge, camerawork, clock) if options.edit else None
-    reel, film, start = Reel(), list[BuiltShot](), 0
-    joined: StoryLine | None = None  # the first shot of a line that has a take joins it to the last line
-    for act, shot, grid in _proposed(acts, clock):
-        scores = plan.scores[shot.id] if plan else _scores(grid, act, shot, judge, camerawork, clock)
-        count = CANDIDATES if plan else shot.takes
-        vetted = _vetted(grid, scores, count, act, shot, camerawork, clock)
-        chosen = plan.takes[shot.id] if plan else choose_takes(grid.cameras, vetted.order, shot.takes)
-        grid = vetted.counted(grid, chosen)
-        reel.add(act.line, shot, grid, scores, chosen[:1], act.filming)
-        run = (storyboard, options, folder, start)
-        takes = tuple(
-            _film(rank, i, scores, grid, act, shot, judge, camerawork, run, clock)
-            for rank, i in enumerate(chosen, start=1)
+    def build(self) -> Build:
+        """The whole film, its takes in the run's folder."""
+        run, board = self.run, self.run.storyboard
+        plan = self._edit() if run.options.edit and self._quick is None else None
+        reel, film = Reel(), list[BuiltShot]()
+        joined: StoryLine | None = None  # the first shot of a line that has a take joins it to the last line
+        for line, shot in [(each, shot) for each in board.lines for shot in each.shots]:
+            transition = CUT if joined is line else line.transition
+            crew, judged = self._judged(line, shot)
+            picked = self._picked(crew, line, shot, judged)
+            order = [i for i in (plan.takes[shot.id] if plan else judged.takes) if i in judged.kept]
+            shown = [(crew, judged.kept[i]) for i in order]
+            if picked is not None:
+                shown = [picked, *(s for s in shown if s[1].key != picked[1].key)][: shot.takes]
+            if shown:
+                best = shown[0][1]
+                reel.add(line, shot, [best.camera.index], [best.score], [best.ends])
+            else:
+                reel.add(line, shot, [], [], [])
+            start = partial(start_of_next, tuple(film), transition)
+            takes = self._takes(line, shot, shown, picked is not None, lambda n, s=start: s(n, board.fps))  # type: ignore[misc]
+            rejected = judged.rejected_for(order)
+            film.append(self._built(line, shot, judged, takes, rejected, transition))
+            joined = line if takes else joined
+        return Build(
+            board,
+            tuple(film),
+            GeometryJudge.name if run.options.rank == "geometry" else DiscriminatorJudge.name,
+            cut_findings(reel.slots, [0] * len(reel.slots)),
+            run.options.edit,
+            plan.trades if plan else (),
+            made_with(),
+            any(take.media.sketched for shot in film for take in shot.takes),
+            grounds=self._grounds(),
+            arrows=run.options.arrows,
         )
-        film.append(_built(grid, act.line, shot, storyboard, takes, first=joined is not act.line))
-        joined = act.line if takes else joined
-        start += film[-1].frames
-    continuity = cut_findings(reel.slots, [0] * len(reel.slots))
-    trades = plan.trades if plan else ()
-    return Build(storyboard, tuple(film), judge.name, continuity, options.edit, trades)
 
+    def _judged(self, line: StoryLine, shot: Shot) -> tuple[Shooting, Judged]:
+        """A shot's proposals in order; in a draft in the order of their geometry, where no other is known."""
+        if self._quick is None:
+            return self.crew, self.crew.judged(line, shot)
+        known = self.crew.judged_before(line, shot)
+        if known is not None:
+            return self.crew, known
+        return self._quick, self._quick.judged(line, replace(shot, takes=1))
 
-def _edit(acts: list[Act], judge: Judge, camerawork: Camerawork, clock: StageClock) -> Edited:
-    """Propose and judge every shot, and choose takes for the sequence; only scores and edges are kept."""
-    reel, scores, takes = Reel(), dict[str, NDArray[np.float64]](), dict[str, list[int]]()
-    for act, shot, grid in _proposed(acts, clock):
-        scores[shot.id] = found = _scores(grid, act, shot, judge, camerawork, clock)
-        vetted = _vetted(grid, found, CANDIDATES, act, shot, camerawork, clock)
-        takes[shot.id] = choose_takes(grid.cameras, vetted.order, shot.takes)
-        some = candidates(grid.cameras, vetted.order, shot.takes, vetted.failed)
-        reel.add(act.line, shot, grid, found, some, act.filming)
-    with clock.spent("edit", len(reel.slots), quiet=True):
-        return edited(reel.slots, scores, takes)
+    def _edit(self) -> Edited:
+        """Judge every shot, and choose takes for the sequence; one that somebody chose stays."""
+        reel, takes = Reel(), dict[str, list[int]]()
+        for line in self.run.storyboard.lines:
+            for shot in line.shots:
+                judged = self.crew.judged(line, shot)
+                picked = self._picked(self.crew, line, shot, judged)
+                some = [picked[1]] if picked else [judged.kept[i] for i in judged.some]
+                places = [0] if picked else judged.some
+                reel.add(line, shot, places, [k.score for k in some], [k.ends for k in some])
+                takes[shot.id] = list(judged.takes)
+        with self.run.clock.spent("edit", len(reel.slots), quiet=True):
+            return edited(reel.slots, takes)
 
+    # -- what somebody chose -------------------------------------------------------------------
 
-def _proposed(acts: list[Act], clock: StageClock) -> Iterator[tuple[Act, Shot, ProposalGrid]]:
-    """Every shot in order, with what is proposed for it."""
-    shots = [(act, shot) for act in acts for shot in act.line.shots]
-    clock.begin("propose", sum(s.proposals for _, s in shots), _UNITS["propose"])
-    for act, shot in shots:
-        with clock.spent("propose", shot.proposals):
-            grid = propose(act.line, shot, act.state, act.filming, advised=True)
-        yield act, shot, grid
-
-
-def _scores(
-    grid: ProposalGrid, act: Act, shot: Shot, judge: Judge, camerawork: Camerawork, clock: StageClock
-) -> NDArray[np.float64]:
-    """The judge's score of every proposal of a shot, [P]."""
-    if not judge.looks or not grid.cameras:
-        return judge.scores(grid.cameras, None) if grid.cameras else np.zeros(0)
-    count = len(grid.cameras)
-    clock.begin("draw", 8 * count, _UNITS["draw"])
-    clock.begin("rank", count, _UNITS["rank"])
-    parts = []
-    for begin in range(0, count, _JUDGED_AT_ONCE):
-        cameras = grid.cameras[begin : begin + _JUDGED_AT_ONCE]
-        with clock.spent("draw", 8 * len(cameras)):
-            frames = camerawork.judge_frames(act.staged, shot.style, grid.story, cameras)
-        with clock.spent("rank", len(cameras)):
-            parts.append(judge.scores(cameras, frames))
-    return np.concatenate(parts)
-
-
-def _vetted(
-    grid: ProposalGrid,
-    scores: NDArray[np.float64],
-    count: int,
-    act: Act,
-    shot: Shot,
-    camerawork: Camerawork,
-    clock: StageClock,
-) -> Vetted:
-    """The proposals that may be kept, looked at in small pictures."""
-    with clock.spent("vet", 1, quiet=True):
-        return vet(grid, scores, count, (act.staged, shot, act.filming), camerawork)
-
-
-def _film(
-    rank: int,
-    chosen: int,
-    scores: NDArray[np.float64],
-    grid: ProposalGrid,
-    act: Act,
-    shot: Shot,
-    judge: Judge,
-    camerawork: Camerawork,
-    run: tuple[Storyboard, Options, Path, int],
-    clock: StageClock,
-) -> BuiltTake:
-    """Draw and encode one take."""
-    storyboard, options, folder, start = run
-    camera = grid.cameras[chosen]
-    story = next(s for s in grid.story if s.index == camera.story)
-    strip = None
-    if options.burn_in:
-        strip = BurnIn(shot.id, rank, camera.movement, storyboard.fps, camera.track.focal, start)
-    clock.begin("film", story.frames, _UNITS["film"])
-    with clock.spent("film", story.frames):
-        frames = camerawork.take_frames(act.staged, shot.style, story, camera, storyboard.size)
-        media: TakeMedia = write_take(folder, shot.id, rank, frames, story.frames, storyboard.fps, strip)
-    score = float(scores[chosen])
-    return BuiltTake(
-        rank,
-        score,
-        camera,
-        story.variant,
-        _subject(grid, act, story),
-        media,
-        achieved(camera, subject_of(shot, story, act.filming), act.filming.rig),
-        judge.logit(camera, score),
-    )
-
-
-def _subject(grid: ProposalGrid, act: Act, story: StoryProposal) -> Subject | None:
-    if grid.subject is None:
+    def _picked(
+        self, crew: Shooting, line: StoryLine, shot: Shot, judged: Judged
+    ) -> tuple[Shooting, Kept] | None:
+        """The chosen take of a shot, and who films it; None where none is chosen, or it is lost."""
+        choice = self.choices.of(shot)
+        if choice is None:
+            return None
+        at = find(choice, judged.keys)
+        if at is not None:
+            kept = judged.kept.get(at) or crew.one(line, shot, choice.key, lambda grid: at)
+            if kept is not None:
+                return crew, kept
+        elif self.choices.same_line(shot, choice):
+            found = self._proposed_again(crew, line, shot, choice)
+            if found is not None:
+                return found
+        self.choices.lost(shot, choice)
         return None
-    height = act.staged.bodies[grid.subject].skeleton.height
-    return Subject(grid.subject, height, story.performances[grid.subject].position)
+
+    def _proposed_again(
+        self, crew: Shooting, line: StoryLine, shot: Shot, choice: Choice
+    ) -> tuple[Shooting, Kept] | None:
+        """A choice among as many proposals, with the seed and under the id, as when it was chosen."""
+        other = crew if choice.seed == self.run.storyboard.seed else Shooting(crew.run, choice.seed)
+        for drawn in dict.fromkeys((shot.drawn_as, choice.shot)):
+            as_chosen = replace(shot, proposals=choice.proposals, drawn=drawn)
+            kept = other.one(line, as_chosen, choice.key, lambda grid: find_again(choice, grid))
+            if kept is not None:
+                return other, kept
+        return None
+
+    # -- filming -------------------------------------------------------------------------------
+
+    def _takes(
+        self,
+        line: StoryLine,
+        shot: Shot,
+        shown: list[tuple[Shooting, Kept]],
+        picked: bool,
+        start: Callable[[int], int],
+    ) -> tuple[BuiltTake, ...]:
+        """The takes of a shot, best first; in a draft a still of the best one, if any has no film yet."""
+        if self._quick is not None and not all(crew.film_is_kept(line, shot, kept) for crew, kept in shown):
+            crew, kept = shown[0]
+            return (crew.sketch(line, shot, kept, picked),)
+        return tuple(
+            crew.film(line, shot, kept, rank, picked and rank == 1, start)
+            for rank, (crew, kept) in enumerate(shown, start=1)
+        )
+
+    def _built(
+        self,
+        line: StoryLine,
+        shot: Shot,
+        judged: Judged,
+        takes: tuple[BuiltTake, ...],
+        rejected: dict[str, int],
+        transition: Transition,
+    ) -> BuiltShot:
+        return BuiltShot(
+            shot=shot,
+            line=line,
+            scene=self.run.storyboard.scenes[line.scene].name,
+            transition=transition,
+            takes=takes,
+            story_proposals=judged.story_proposals,
+            camera_proposals=judged.camera_proposals,
+            proposals=len(judged.keys),
+            rejected=rejected,
+            advice=judged.advice,
+            depends=self.choices.depends[shot.id],
+        )
+
+    def _grounds(self) -> tuple[Ground, ...]:
+        """Every scene's place from above, for plans; of a scene in which nothing happens an empty one."""
+        out = []
+        for number, scene in enumerate(self.run.storyboard.scenes):
+            found = self.run.acts.scene(number)
+            if found is None:
+                out.append(Ground(scene.name, "", (0, 0, 5, 5), (), (), ()))
+                continue
+            text, staged = found
+            key = digest("ground", code_digest(), text, scene.name)
+            ground = _read_ground(self.run.cache.read(key))
+            if ground is None:
+                ground = ground_of(staged().world, scene.room, scene.name)
+                self.run.cache.put(key, {"value": pack(ground)})
+            out.append(ground)
+        return tuple(out)
 
 
-def _built(
-    grid: ProposalGrid,
-    line: StoryLine,
-    shot: Shot,
-    storyboard: Storyboard,
-    takes: tuple[BuiltTake, ...],
-    first: bool,
-) -> BuiltShot:
-    return BuiltShot(
-        shot=shot,
-        line=line,
-        scene=storyboard.scenes[line.scene].name,
-        transition=line.transition if first else CUT,
-        takes=takes,
-        story_proposals=len(grid.story),
-        camera_proposals=_cameras_each(grid.cameras),
-        proposals=len(grid.cameras),
-        rejected=grid.rejected,
-        advice=grid.advice,
-    )
-
-
-def _cameras_each(cameras: tuple[CameraProposal, ...]) -> int:
-    """The most cameras any one story proposal was given: the paper's C."""
-    counts = np.bincount([c.story for c in cameras]) if cameras else np.zeros(1, int)
-    return int(counts.max())
+def _read_ground(data: bytes | None) -> Ground | None:
+    try:
+        found = unpack(data) if data is not None else None
+    except PackError:
+        return None
+    return found if isinstance(found, Ground) else None
 
 
 def _warn_of_poor_shots(shots: tuple[BuiltShot, ...], report: Report) -> None:
@@ -336,12 +385,13 @@ def _warn_of_poor_shots(shots: tuple[BuiltShot, ...], report: Report) -> None:
         )
 
 
-def _report(seconds: float, clock: StageClock, options: Options, notes: tuple[str, ...]) -> RunReport:
+def _report(seconds: float, clock: StageClock, run: Run, notes: tuple[str, ...]) -> RunReport:
     stages = tuple(
-        Stage(name, spent, clock.units.get(name, 0), _UNITS.get(name, ""))
+        Stage(name, spent, clock.units.get(name, 0), UNITS.get(name, ""))
         for name, spent in clock.seconds.items()
     )
-    return RunReport(seconds, stages, peak_mib=peak_mib(), device=options.device, notes=notes)
+    cache, device = run.cache, run.options.device
+    return RunReport(seconds, stages, cache.hits, cache.misses, peak_mib(), device, notes)
 
 
 def peak_mib() -> float:

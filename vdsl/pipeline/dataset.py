@@ -1,137 +1,173 @@
 """The discriminator's training set: random stories, filmed well and filmed badly.
 
-Positives are what a geometry-only designer picks from the proposals of a line (the best by
-:func:`vdsl.cinema.score.geometry_score` that do not look alike); negatives are picks shaken about
-(:mod:`vdsl.pipeline.perturb`). Every draw is keyed by the seed and the story's number.
+Positives are what the virtual designer picks of a shot's proposals (:mod:`vdsl.pipeline.designer`);
+negatives are picks shaken about at graded strengths, and picks made to show no type
+(:mod:`vdsl.pipeline.perturb`), as many as there are positives. Every draw is keyed by the seed and the
+story's number, whole stories go to disk, and the set itself says which were: so it is the same whether or
+not its making was stopped.
 """
 
 from __future__ import annotations
 
-import json
-import random
+from collections import deque
+from collections.abc import Iterator
+from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from pathlib import Path
 from time import perf_counter
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
-from ranker.data import ShardWriter, Words
+from ranker.data import ShardWriter
+from runtime.raster.types import LOOK_VERSION
 
-from ..cinema.score import geometry_score
-from ..lang import Report, Settings, Source
-from ..lang.ir import ANGLES, MOVEMENT_FAMILIES, SCALES
-from ..lang.words import paper_word
-from ..library import Catalog
-from ..propose.story import propose
-from ..propose.types import CameraProposal, ProposalGrid
-from .compile import stage_acts
-from .filming import Camerawork
-from .perturb import perturbed
+from ..propose.types import CameraProposal, ProposalGrid, StoryProposal
+from .casting import Scene, Troupe
+from .designer import picks
+from .filming import SEGMENTS, Camerawork
+from .labels import WORDS, classes
+from .perturb import mistyped, perturbed
 from .progress import Progress, Silence
-from .script import ScriptError, check_source
-from .selection import choose_takes
-from .staging import Stagehand
-from .stories import places, random_story
 
-WORDS = Words(tuple(MOVEMENT_FAMILIES), SCALES, ANGLES)
-_LINES = 5  # lines of a random story
-_PICKS = 4  # clips of each kind a line
-_PROPOSALS = 64
-_LEAST_SCORE = 0.6
-#: Negatives at least this strong no longer show the type their line asked for.
-_STILL_THE_TYPE = 0.35
-_FAMILY = {word: name for name, words in MOVEMENT_FAMILIES.items() for word in words}
+_PICKS = 4  # of each shot
+_PROPOSALS = 16
+_SHARD = 64
+#: Share of the negatives that are of no type; the others are perturbed.
+_MISTYPED = 1 / 6
+_MISTYPED_STRENGTH = 0.5
+#: Negatives weaker than this still show the movement and angle, or the size, that their line asked for.
+_STILL_MOVES, _STILL_SIZED = 0.35, 0.15
+_AHEAD = 2  # scenes drawn while the next are staged and proposed
 
 
 @dataclass(frozen=True, eq=False)
-class _Clip:
+class Clip:
+    """A take to be drawn. kind: ``designer``, ``perturbed`` or ``mistyped``"""
+
     camera: CameraProposal
+    kind: str
     strength: float
 
-    @property
-    def shows_type(self) -> bool:
-        return self.strength < _STILL_THE_TYPE
+    def words(self) -> tuple[str | None, str | None, str | None]:
+        """Movement, size and angle as classes, where it still shows them."""
+        c = self.camera
+        movement, scale, angle = classes(c.movement, c.scale, c.angle)
+        if self.kind == "mistyped":
+            return None, None, None
+        return (
+            movement if self.strength < _STILL_MOVES else None,
+            scale if self.strength < _STILL_SIZED else None,
+            angle if self.strength < _STILL_MOVES else None,
+        )
+
+
+def made(seed: int) -> dict[str, Any]:
+    """What a training set says of how it is made: sets that differ in it are not put together."""
+    return {"seed": seed, "look": LOOK_VERSION}
 
 
 def generate(
-    folder: Path, clips: int, seed: int = 0, device: str = "auto", progress: Progress | None = None
+    folder: Path,
+    clips: int,
+    seed: int = 0,
+    device: str = "auto",
+    progress: Progress | None = None,
+    size: int = 224,
 ) -> int:
     """Write at least ``clips`` clips into ``folder``, going on where an earlier call stopped.
 
-    Returns how many there are. Raises OSError or :class:`ranker.RankerError` for a folder that cannot
-    be used.
+    size: side of the frames in pixels. Returns how many there are. Raises OSError or
+    :class:`ranker.RankerError` for a folder that cannot be used or holds another kind of set.
     """
     watcher = progress or Silence()
-    catalog = Catalog(Report())
-    grounds = places(catalog)
-    cast = tuple(sorted(catalog.names("cast")))
-    camerawork = Camerawork(device)
-    hand = Stagehand(catalog)
-    marker = folder / "stories.json"
-    with ShardWriter(folder, WORDS) as writer:
-        number = json.loads(marker.read_text("utf-8"))["next"] if marker.exists() else 0
-        watcher.begin("clips", max(0, clips - len(writer)), "clips")
-        while len(writer) < clips:
-            place = grounds[number % len(grounds)]
-            rng = random.Random(f"{seed} story {number}")
-            text = random_story(catalog, place, rng, _LINES, cast)
-            before, begun = len(writer), perf_counter()
-            _film_story(text, number, seed, f"{place.set}.{place.room}", hand, camerawork, writer)
-            writer.flush()
-            number += 1
-            marker.write_text(json.dumps({"next": number}), "utf-8")
-            watcher.advance("clips", len(writer) - before, perf_counter() - begun)
+    with ShardWriter(folder, WORDS, (size, size), SEGMENTS, shard=1 << 30, made=made(seed)) as writer:
+        number = 1 + max((int(label.about.get("story", -1)) for label in writer.labels), default=-1)
+        begun = len(writer)
+        watcher.begin("clips", max(0, clips - begun), "clips")
+        if begun >= clips:
+            return begun
+        for scene, made_of, frames, seconds in _drawn(Troupe(seed), number, seed, Camerawork(device), size):
+            if scene.number != number:  # a story is whole
+                if writer.pending >= _SHARD or len(writer) + writer.pending >= clips:
+                    writer.flush()
+                number = scene.number
+                if len(writer) >= clips:
+                    break
+            for clip, pictures in zip(made_of, frames, strict=True):
+                _add(writer, scene, clip, pictures)
+            watcher.advance("clips", len(made_of), seconds)
         return len(writer)
 
 
-def _film_story(
-    text: str,
-    number: int,
-    seed: int,
-    group: str,
-    hand: Stagehand,
-    camerawork: Camerawork,
-    writer: ShardWriter,
-) -> None:
-    """Film one story's lines; one that cannot be played (a way blocked, say) gives nothing."""
-    try:
-        checked = check_source(Source(f"<story {number}>", text), overrides=Settings(seed=seed + number))
-        acts = stage_acts(checked, hand)
-    except ScriptError:
-        return
-    rng = np.random.default_rng((seed, number))
-    for act in acts:
-        shot = replace(act.line.shots[0], proposals=_PROPOSALS)
-        grid = propose(act.line, shot, act.state, act.filming)
-        picked = _clips(grid, rng)
-        if not picked:
-            continue
-        cameras = tuple(c.camera for c in picked)
-        frames = camerawork.judge_frames(act.staged, shot.style, grid.story, cameras)
-        for clip, pictures in zip(picked, frames, strict=True):
-            c = clip.camera
-            movement, scale, angle = (
-                (_FAMILY[paper_word(c.movement)], paper_word(c.scale), paper_word(c.angle))
-                if clip.shows_type
-                else (None, None, None)
-            )
-            writer.add(pictures, clip.strength == 0.0, movement, scale, angle, group, clip.strength)
+def _add(writer: ShardWriter, scene: Scene, clip: Clip, pictures: NDArray[np.uint8]) -> None:
+    c = clip.camera
+    about = {
+        "story": scene.number,
+        "kind": clip.kind,
+        "camera": f"{c.movement} {c.scale} {c.angle}",
+        "place": scene.place,
+        "cast": list(scene.cast),
+    }
+    group = scene.place.partition(".")[0]
+    good = clip.kind == "designer"
+    writer.add(pictures, good, *clip.words(), group, clip.strength, scene.split, about)
 
 
-def _clips(grid: ProposalGrid, rng: np.random.Generator) -> list[_Clip]:
-    """The designer's picks of a line, and as many spoilt ones at graded strengths."""
-    scores = np.array([geometry_score(c.measures) for c in grid.cameras])
-    good = (
-        [i for i in choose_takes(grid.cameras, scores, _PICKS) if scores[i] >= _LEAST_SCORE]
-        if len(scores)
-        else []
+def _drawn(
+    troupe: Troupe, first: int, seed: int, camerawork: Camerawork, size: int
+) -> Iterator[tuple[Scene, list[Clip], NDArray[np.uint8], float]]:
+    """The scenes of all stories from ``first`` on with their clips and the frames of these, in order.
+
+    One thread draws while this one stages and proposes what comes next.
+    """
+    waiting: deque[tuple[Scene, list[Clip], Future[NDArray[np.uint8]]]] = deque()
+    last = perf_counter()
+    with ThreadPoolExecutor(1) as drawer:
+        for scene in _scenes(troupe, first):
+            clips = clips_of(scene, np.random.default_rng((seed, scene.number, scene.shots[0].line)))
+            if clips:
+                waiting.append((scene, clips, drawer.submit(_frames, camerawork, scene, clips, size)))
+            while len(waiting) > _AHEAD:
+                done, of, frames = waiting.popleft()
+                pictures, now = frames.result(), perf_counter()
+                yield done, of, pictures, now - last
+                last = now
+
+
+def _scenes(troupe: Troupe, first: int) -> Iterator[Scene]:
+    number = first
+    while True:
+        yield from troupe.scenes(number, _PROPOSALS)
+        number += 1
+
+
+def _frames(camerawork: Camerawork, scene: Scene, clips: list[Clip], size: int) -> NDArray[np.uint8]:
+    """All clips of a scene in one go: they share its moments."""
+    cameras = tuple(clip.camera for clip in clips)
+    return camerawork.judge_frames(
+        scene.staged, scene.shots[0].style, stories_of(scene.grids), cameras, (size, size)
     )
-    out = [_Clip(grid.cameras[i], 0.0) for i in good]
-    for i in good:
-        strength = float(rng.uniform(0.1, 1.0))
-        out.append(_Clip(_spoilt(grid.cameras[i], strength, rng), strength))
+
+
+def stories_of(grids: tuple[ProposalGrid, ...]) -> tuple[StoryProposal, ...]:
+    """The performances the grids of a scene share."""
+    return grids[0].story
+
+
+def clips_of(scene: Scene, rng: np.random.Generator) -> list[Clip]:
+    """The designer's picks of a scene's shots, and as many spoilt ones."""
+    out: list[Clip] = []
+    for grid in scene.grids:
+        kept = [grid.cameras[i] for i in picks(grid.cameras, _PICKS)]
+        out += [Clip(camera, "designer", 0.0) for camera in kept]
+        out += [_spoilt(camera, rng) for camera in kept]
     return out
 
 
-def _spoilt(camera: CameraProposal, strength: float, rng: np.random.Generator) -> CameraProposal:
-    return replace(camera, track=perturbed(camera.track, strength, rng))
+def _spoilt(camera: CameraProposal, rng: np.random.Generator) -> Clip:
+    if rng.random() < _MISTYPED:
+        return Clip(replace(camera, track=mistyped(camera.track, rng)), "mistyped", _MISTYPED_STRENGTH)
+    strength = float(rng.uniform(0.1, 1.0))
+    return Clip(replace(camera, track=perturbed(camera.track, strength, rng)), "perturbed", strength)

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
+from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -29,6 +30,8 @@ _HINT = 0.05  # what may be meant is worth this much score
 _ORDER = 1e-9  # of two that are as good the one that ranks higher
 
 Array = NDArray[np.float64]
+#: First and last moment of a take.
+Ends: TypeAlias = tuple[Edge, Edge]
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,7 +48,7 @@ class Slot:
     joined: bool
     proposals: tuple[int, ...]
     scores: tuple[float, ...]
-    ends: tuple[tuple[Edge, Edge], ...]
+    ends: tuple[Ends, ...]
 
 
 class Reel:
@@ -60,12 +63,11 @@ class Reel:
         self,
         line: StoryLine,
         shot: Shot,
-        grid: ProposalGrid,
-        scores: NDArray[np.floating],
         candidates: Sequence[int],
-        filming: Filming,
+        scores: Sequence[float],
+        ends: Sequence[Ends],
     ) -> None:
-        """The next shot. candidates: indices of proposals, best first; scores: [P] of all proposals."""
+        """The next shot. candidates: indices of proposals, best first; scores, ends: of each of them."""
         self._number += 1
         if not candidates:
             return
@@ -73,15 +75,13 @@ class Reel:
         joined = last is line or (
             last is not None and last.scene == line.scene and line.transition.kind == "cut"
         )
-        ends = _ends(line, shot, grid, candidates, filming)
-        values = tuple(float(scores[i]) for i in candidates)
-        self.slots.append(Slot(shot.id, self._number, joined, tuple(candidates), values, ends))
+        self.slots.append(Slot(shot.id, self._number, joined, tuple(candidates), tuple(scores), tuple(ends)))
         self._last = line
 
 
-def _ends(
+def ends_of(
     line: StoryLine, shot: Shot, grid: ProposalGrid, candidates: Sequence[int], filming: Filming
-) -> tuple[tuple[Edge, Edge], ...]:
+) -> tuple[Ends, ...]:
     """First and last moment of each candidate."""
     wanted = {grid.cameras[i].story for i in candidates}
     subjects, people = {}, {}
@@ -133,10 +133,9 @@ def _between(slots: Sequence[Slot], k: int, before: int, after: int) -> tuple[Fi
 
 @dataclass(frozen=True, eq=False)
 class Edited:
-    """scores: [P] of all proposals, by shot; takes: proposals of each shot that are kept, first the one that
-    the sequence wants; trades: what was given up for it."""
+    """takes: proposals of each shot that are kept, first the one that the sequence wants; trades: what was
+    given up for it."""
 
-    scores: Mapping[str, Array]
     takes: Mapping[str, list[int]]
     trades: tuple[Trade, ...]
 
@@ -153,15 +152,15 @@ def candidates(
     return [i for i in all_of_them if i not in failed] or all_of_them
 
 
-def edited(slots: Sequence[Slot], scores: Mapping[str, Array], takes: Mapping[str, list[int]]) -> Edited:
+def edited(slots: Sequence[Slot], takes: Mapping[str, Sequence[int]]) -> Edited:
     """The best sequence of the slots' candidates. takes: proposals that would be kept without it."""
     choice, trades = edit(slots)
-    out = dict(takes)
+    out = {shot: list(kept) for shot, kept in takes.items()}
     for slot, k in zip(slots, choice, strict=True):
         first = slot.proposals[k]
         others = [i for i in takes[slot.shot] if i != first]
         out[slot.shot] = [first, *others][: len(takes[slot.shot])]
-    return Edited(scores, out, trades)
+    return Edited(out, trades)
 
 
 def edit(slots: Sequence[Slot]) -> tuple[list[int], tuple[Trade, ...]]:

@@ -20,6 +20,8 @@ SEGMENTS = 8
 JUDGE_SIZE = (224, 224)
 #: Full frames drawn in one launch: enough to keep every core busy, few enough to stay small.
 _FRAMES_A_LAUNCH = 12
+#: Every so many frames of a take are asked how fine the bodies in them have to be.
+_LOOKED_AT = 4
 
 
 def segment_frames(frames: int, segments: int = SEGMENTS) -> NDArray[np.int64]:
@@ -48,10 +50,14 @@ class Camerawork:
         stories: tuple[StoryProposal, ...],
         cameras: tuple[CameraProposal, ...],
         size: tuple[int, int] = JUDGE_SIZE,
+        which: Sequence[int] = range(SEGMENTS),
     ) -> NDArray[np.uint8]:
-        """Frames for ranking: uint8 [P, 8, H, W, 3] of P proposals; shared moments are skinned once."""
-        color = self._segments(staged, style, stories, cameras, size).color
-        return color.reshape(len(cameras), SEGMENTS, *color.shape[1:])
+        """Frames for ranking: uint8 [P, 8, H, W, 3] of P proposals; shared moments are skinned once.
+
+        which: of the eight, those that are wanted
+        """
+        color = self._segments(staged, style, stories, cameras, size, which).color
+        return color.reshape(len(cameras), len(which), *color.shape[1:])
 
     def judge_ids(
         self,
@@ -62,7 +68,7 @@ class Camerawork:
         size: tuple[int, int],
     ) -> NDArray[np.int32]:
         """Object ids in the same frames: int32 [P, 8, H, W]."""
-        ids = self._segments(staged, style, stories, cameras, size, ids=True).ids
+        ids = self._segments(staged, style, stories, cameras, size, range(SEGMENTS), ids=True).ids
         assert ids is not None
         return ids.reshape(len(cameras), SEGMENTS, *ids.shape[1:])
 
@@ -73,16 +79,18 @@ class Camerawork:
         stories: tuple[StoryProposal, ...],
         cameras: tuple[CameraProposal, ...],
         size: tuple[int, int],
+        which: Sequence[int],
         ids: bool = False,
     ) -> Frames:
-        """The middle frames of the segments of P proposals, one after the other."""
-        at = {s.index: segment_frames(s.frames) for s in stories if any(c.story == s.index for c in cameras)}
-        first = {story: k * SEGMENTS for k, story in enumerate(at)}
+        """The middle frames of some of the segments of P proposals, one after the other."""
+        used = {c.story for c in cameras}
+        at = {s.index: segment_frames(s.frames)[list(which)] for s in stories if s.index in used}
+        first = {story: k * len(which) for k, story in enumerate(at)}
         by_index = {s.index: s for s in stories}
         moments = np.concatenate([story_palettes(staged, by_index[i], frames) for i, frames in at.items()])
-        moment = np.concatenate([first[c.story] + np.arange(SEGMENTS) for c in cameras])
+        moment = np.concatenate([first[c.story] + np.arange(len(which)) for c in cameras])
         tracks = [(c.track, at[c.story]) for c in cameras]
-        hidden = np.repeat(np.stack([not_drawn(staged, c) for c in cameras]), SEGMENTS, axis=0)
+        hidden = np.repeat(np.stack([not_drawn(staged, c) for c in cameras]), len(which), axis=0)
         views = Views(_camera(tracks), moment.astype(np.int32), hidden)
         return self._renderer(staged, style).render(moments, views, size, ids=ids)
 
@@ -96,11 +104,14 @@ class Camerawork:
     ) -> Iterator[NDArray[np.uint8]]:
         """Every frame of a take in order, uint8 [H, W, 3]; the next few are drawn while one is used."""
         renderer = self._renderer(staged, style)
+        detail = _take_detail(renderer, staged, story, camera, size)
 
         def draw(begin: int) -> NDArray[np.uint8]:
             frames = np.arange(begin, min(begin + _FRAMES_A_LAUNCH, story.frames))
             hidden = np.repeat(not_drawn(staged, camera)[None], len(frames), axis=0)
-            views = Views(_camera([(camera.track, frames)]), np.arange(len(frames), dtype=np.int32), hidden)
+            taken = _camera([(camera.track, frames)], optics=True)
+            levels = np.repeat(detail, len(frames), axis=0)
+            views = Views(taken, np.arange(len(frames), dtype=np.int32), hidden, levels)
             return renderer.render(story_palettes(staged, story, frames), views, size).color
 
         with ThreadPoolExecutor(max_workers=1) as ahead:
@@ -110,6 +121,23 @@ class Camerawork:
                 if begin + _FRAMES_A_LAUNCH < story.frames:
                     upcoming = ahead.submit(draw, begin + _FRAMES_A_LAUNCH)
                 yield from drawn
+
+    def frames_at(
+        self,
+        staged: StagedScene,
+        style: str,
+        story: StoryProposal,
+        camera: CameraProposal,
+        size: tuple[int, int],
+        at: NDArray[np.integer],
+    ) -> NDArray[np.uint8]:
+        """Some frames of a take, uint8 [N, H, W, 3]; at: [N] indices."""
+        renderer = self._renderer(staged, style)
+        hidden = np.repeat(not_drawn(staged, camera)[None], len(at), axis=0)
+        levels = np.repeat(_take_detail(renderer, staged, story, camera, size), len(at), axis=0)
+        moment = np.arange(len(at), dtype=np.int32)
+        views = Views(_camera([(camera.track, at)], optics=True), moment, hidden, levels)
+        return renderer.render(story_palettes(staged, story, at), views, size).color
 
     def stills(
         self,
@@ -132,9 +160,32 @@ class Camerawork:
         return self._renderers[style]
 
 
+def _take_detail(
+    renderer: Renderer,
+    staged: StagedScene,
+    story: StoryProposal,
+    camera: CameraProposal,
+    size: tuple[int, int],
+) -> NDArray[np.int32]:
+    """The levels of detail that are fine enough for a whole take, int32 [1, B]: none changes on the way."""
+    asked = np.unique(np.append(np.arange(0, story.frames, _LOOKED_AT), story.frames - 1))
+    finest = []
+    for begin in range(0, len(asked), _FRAMES_A_LAUNCH):  # a few poses at a time
+        at = asked[begin : begin + _FRAMES_A_LAUNCH]
+        hidden = np.repeat(not_drawn(staged, camera)[None], len(at), axis=0)
+        views = Views(_camera([(camera.track, at)]), np.arange(len(at), dtype=np.int32), hidden)
+        finest.append(renderer.levels(story_palettes(staged, story, at), views, size).min(axis=0))
+    return np.stack(finest).min(axis=0, keepdims=True)
+
+
 def first_frame(track: CameraTrack) -> Camera:
     """A track's first frame as a camera."""
     return _camera([(track, np.array([0]))])
+
+
+def some_frames(track: CameraTrack, frames: NDArray[np.integer], optics: bool = False) -> Camera:
+    """Some of a track's frames as a batch of cameras. optics: with its focus and aperture"""
+    return _camera([(track, frames)], optics)
 
 
 def story_palettes(
@@ -145,11 +196,18 @@ def story_palettes(
     return palettes(staged, joints, story.props, frames)
 
 
-def _camera(tracks: Sequence[tuple[CameraTrack, NDArray[np.integer]]]) -> Camera:
-    """The chosen frames of several tracks, one after the other, as a batch of cameras."""
+def _camera(tracks: Sequence[tuple[CameraTrack, NDArray[np.integer]]], optics: bool = False) -> Camera:
+    """The chosen frames of several tracks, one after the other, as a batch of cameras.
+
+    optics: with the focus and aperture of the one track there is; what is judged stays sharp
+    """
+    first, frames = tracks[0]
+    blurs = optics and first.focus is not None and float(first.aperture) > 0
     return Camera(
         position=np.concatenate([t.position[f] for t, f in tracks]).astype(np.float32),
         axes=np.concatenate([camera_axes(t.rotation[f]) for t, f in tracks]).astype(np.float32),
         focal=np.concatenate([t.focal[f] for t, f in tracks]).astype(np.float32),
-        sensor=tracks[0][0].sensor,
+        sensor=first.sensor,
+        focus=first.focus[frames].astype(np.float32) if blurs and first.focus is not None else None,
+        aperture=float(first.aperture) if blurs else 0.0,
     )

@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Protocol
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..cinema.score import geometry_score
+from ..cinema.score import PRIOR, geometry_score
 from ..propose.types import CameraProposal
+
+if TYPE_CHECKING:
+    from ranker.infer import Scores
 
 
 class Judge(Protocol):
@@ -27,6 +30,12 @@ class Judge(Protocol):
         self, cameras: tuple[CameraProposal, ...], frames: NDArray[np.uint8] | None
     ) -> NDArray[np.float64]:
         """Scores [P] of P proposals; frames are uint8 [P, 8, 224, 224, 3] where the judge looks."""
+        ...
+
+    def glance(
+        self, cameras: tuple[CameraProposal, ...], frames: NDArray[np.uint8], at: Sequence[int]
+    ) -> NDArray[np.float64]:
+        """Scores [P] by the frames ``at`` of the eight alone, uint8 [P, k, 224, 224, 3]."""
         ...
 
     def logit(self, camera: CameraProposal, score: float) -> float | None:
@@ -45,13 +54,15 @@ class GeometryJudge:
     ) -> NDArray[np.float64]:
         return np.array([geometry_score(c.measures) for c in cameras])
 
+    def glance(
+        self, cameras: tuple[CameraProposal, ...], frames: NDArray[np.uint8], at: Sequence[int]
+    ) -> NDArray[np.float64]:
+        return self.scores(cameras, None)
+
     def logit(self, camera: CameraProposal, score: float) -> float | None:
         return None
 
 
-#: How much a full point of the geometry score moves the odds of a take, in logits: as a prior, it breaks
-#: what the pictures leave nearly even. About the spread of the discriminator's own logits over a shot.
-PRIOR = 10.0
 _PRIOR_MIDDLE = 0.75
 
 
@@ -63,26 +74,40 @@ def prior(measures: Mapping[str, float]) -> float:
 class DiscriminatorJudge:
     """The shot ranking discriminator (p_b of the paper's section 3.3), with measured geometry as prior.
 
-    The score is the probability whose log odds are the discriminator's plus :func:`prior`.
-    Raises :class:`ranker.RankerError` if the weights are missing or unreadable.
+    The score is the probability whose log odds are the discriminator's plus :func:`prior`. taste: a file of
+    what a writer's choices taught, which counts with the discriminator's.
+    Raises :class:`ranker.RankerError` if the weights or the taste are missing or unreadable.
     """
 
     name = "ranker"
     looks = True
 
-    def __init__(self, weights: Path | None, device: str) -> None:
+    def __init__(self, weights: Path | None, device: str, taste: Path | None = None) -> None:
         # Only now: a geometry run must not pay for torch.
         from ranker.infer import Ranker
+        from ranker.taste import load_taste
+        from ranker.weights import load_card
 
         self._ranker = Ranker.load(weights, device="cuda" if device == "cuda" else "cpu")
+        self._taste = load_taste(taste, load_card(weights).sha256) if taste is not None else None
 
     def scores(
         self, cameras: tuple[CameraProposal, ...], frames: NDArray[np.uint8] | None
     ) -> NDArray[np.float64]:
         if frames is None:
             raise ValueError("the discriminator judges by frames")
-        # From the logit: p_b itself runs out of digits near 1.
-        logit = self._ranker.score(frames).margin.astype(np.float64)
+        return self._scored(cameras, self._ranker.score(frames))
+
+    def glance(
+        self, cameras: tuple[CameraProposal, ...], frames: NDArray[np.uint8], at: Sequence[int]
+    ) -> NDArray[np.float64]:
+        return self._scored(cameras, self._ranker.glance(frames, at))
+
+    def _scored(self, cameras: tuple[CameraProposal, ...], seen: Scores) -> NDArray[np.float64]:
+        """From the logit: p_b itself runs out of digits near 1."""
+        logit = seen.margin.astype(np.float64)
+        if self._taste is not None:
+            logit += self._taste.adds(seen.feature)
         priors = np.array([prior(c.measures) for c in cameras])
         return np.asarray(1.0 / (1.0 + np.exp(-(logit + priors))))
 

@@ -6,10 +6,12 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 from numpy.typing import NDArray
 
-from ..cinema.track import CameraTrack
+from ..cinema.track import CameraTrack, look_at_rotation
 
 #: At strength 1: share of the subject's distance, radians of aim and roll, log of the focal length,
 #: metres and radians of unsteadiness.
@@ -36,6 +38,37 @@ def perturbed(track: CameraTrack, strength: float, rng: np.random.Generator) -> 
     rotation[:, 1:] += shake * _SHAKE_AIM * _noise(rng, frames)[:, :2]
     scale = np.exp(_FOCAL * focal * rng.choice((-1, 1)) * rng.uniform(0.4, 1))
     return CameraTrack(position, rotation, track.focal * scale, track.look_at, track.sensor)
+
+
+def mistyped(track: CameraTrack, rng: np.random.Generator) -> CameraTrack:
+    """The track as one that does not show what was asked: a size between two, or a movement that is none.
+
+    A lens that cuts through joints, a movement that turns round half-way, or one that wanders off its subject
+    and onto it again.
+    """
+    kind = rng.integers(3)
+    if kind == 0:
+        focal = track.focal * np.exp(rng.choice((-1, 1)) * rng.uniform(0.28, 0.4))
+        rotation = track.rotation.copy()
+        rotation[:, 1] += rng.choice((-1, 1)) * rng.uniform(0.03, 0.07)
+        return replace(track, rotation=rotation, focal=focal)
+    frames = len(track.focal)
+    t = np.linspace(0.0, 1.0, frames)
+    turn = rng.uniform(0.4, 0.6)
+    there = np.minimum(t / turn, (1 - t) / (1 - turn))
+    if kind == 1:
+        at = np.round(there * (frames - 1)).astype(int)
+        moved = CameraTrack(
+            track.position[at], track.rotation[at], track.focal[at], track.look_at, track.sensor
+        )
+        still = float(np.linalg.norm(np.ptp(track.position, axis=0))) + float(np.ptp(track.rotation[:, 2]))
+        if still > 0.1:
+            return moved
+    aim = track.look_at - track.position
+    across = np.cross(aim, (0.0, 0.0, 1.0))
+    away = there[:, None] * across * rng.choice((-1, 1)) * rng.uniform(0.3, 0.6)
+    rotation = track.rotation + look_at_rotation(track.position, track.look_at + away)
+    return replace(track, rotation=rotation - look_at_rotation(track.position, track.look_at))
 
 
 def _unit(rng: np.random.Generator) -> NDArray[np.float64]:

@@ -35,13 +35,20 @@ POSES = 8
 
 
 class Studio:
-    """Draws stills; keeps its renderer between them."""
+    """Draws stills; keeps its renderer between them. ``camerawork``: somebody else's renderers."""
 
-    def __init__(self, catalog: Catalog, device: str = "auto", style: str = "board", own: Path | None = None):
+    def __init__(
+        self,
+        catalog: Catalog,
+        device: str = "auto",
+        style: str = "board",
+        own: Path | None = None,
+        camerawork: Camerawork | None = None,
+    ):
         self.catalog = catalog
         self.own = own
         self.style = style
-        self._camerawork = Camerawork(device)
+        self._camerawork = camerawork or Camerawork(device)
 
     # -- stills ------------------------------------------------------------------------------
 

@@ -18,7 +18,7 @@ from ..lang import Report
 from ..lang.ir import Shot, Storyboard
 from ..propose.story import propose
 from .compile import stage_acts
-from .edit import Reel, Slot, candidates, cut_findings
+from .edit import Reel, Slot, candidates, cut_findings, ends_of
 from .judging import GeometryJudge
 from .script import Checked
 
@@ -46,7 +46,8 @@ def rehearse(checked: Checked, proposals: int = PROPOSALS) -> list[Slot]:
             grid = propose(act.line, few, act.state, act.filming)
             scores = judge.scores(grid.cameras, None)
             chosen = candidates(grid.cameras, scores, shot.takes)
-            reel.add(act.line, shot, grid, scores, chosen, act.filming)
+            ends = ends_of(act.line, shot, grid, chosen, act.filming)
+            reel.add(act.line, shot, chosen, [float(scores[i]) for i in chosen], ends)
     return reel.slots
 
 

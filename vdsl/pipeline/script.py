@@ -34,17 +34,19 @@ class Checked:
     report: Report
 
 
-def load_storyboard(path: Path, overrides: Settings | None = None) -> Checked:
+def load_storyboard(
+    path: Path, overrides: Settings | None = None, defaults: Settings | None = None
+) -> Checked:
     """Read, parse and check a script.
 
-    overrides: settings that win over the script's header lines
+    overrides: settings that win over the script's header lines; defaults: those that hold where it says none
     Raises :class:`ScriptError`, or OSError where the file cannot be read.
     """
     report = Report()
     source = read_source(path, report)
     if source is None:
         raise ScriptError(report)
-    return check_source(source, report, overrides)
+    return check_source(source, report, overrides, defaults=defaults)
 
 
 def check_source(
@@ -52,13 +54,14 @@ def check_source(
     report: Report | None = None,
     overrides: Settings | None = None,
     definitions: Path | None = None,
+    defaults: Settings | None = None,
 ) -> Checked:
     """The same from text in memory; definitions: a script whose definitions it may use."""
     report = Report() if report is None else report
     script, _ = parse(source, report)
     also = read_source(definitions, report) if definitions is not None else None
     catalog = Catalog.for_script(script, report, parse(also, report)[0] if also is not None else None)
-    storyboard = check(script, catalog, report, overrides)
+    storyboard = check(script, catalog, report, overrides, defaults)
     if storyboard is None:
         raise ScriptError(report)
     return Checked(storyboard, catalog, report)

@@ -31,14 +31,15 @@ def choose_takes(cameras: tuple[CameraProposal, ...], scores: NDArray[np.floatin
     for i in order:
         if len(chosen) == count:
             break
-        if not any(_alike(cameras[i], cameras[j]) for j in chosen):
+        if not any(alike(cameras[i], cameras[j]) for j in chosen):
             chosen.append(i)
     spare = [i for i in order if i not in set(chosen)]
     chosen += spare[: count - len(chosen)]
     return sorted(chosen, key=order.index)
 
 
-def _alike(a: CameraProposal, b: CameraProposal) -> bool:
+def alike(a: CameraProposal, b: CameraProposal) -> bool:
+    """Whether two takes would look the same."""
     one, two = _sampled(a), _sampled(b)
     distance = np.linalg.norm(one[0] - two[0], axis=-1)
     reach = np.linalg.norm(one[0] - one[1], axis=-1)

@@ -1,23 +1,32 @@
 """Random stories over the library, as text: what the discriminator's training set is filmed from.
 
-Written as scripts and not as checked storyboards, so that training data passes the same gate as
-everything a writer types. Every draw comes from one seed.
+Written as scripts and not as checked storyboards, so that training data passes the same gate as everything
+a writer types. Every draw comes from one seed. Guarantees that what is kept for testing goes by names
+alone: whatever the seed, no set and nobody of the cast is ever on both sides.
 """
 
 from __future__ import annotations
 
+import hashlib
 import random
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from ..lang.definitions.action import ActionDef
 from ..lang.definitions.set import SetDef
 from ..lang.definitions.types import SetNode
-from ..lang.ir import ANGLES, MOVEMENT_FAMILIES, SCALES
+from ..lang.ir import ALL_ANGLES, ANGLES, FURTHER_MOVEMENTS, MOVEMENT_FAMILIES, SIZES
 from ..library import Catalog
 
 _TIMES = ("dawn", "day", "dusk", "night")
 _NAMES = ("anna", "ben")
+_TEST_SHARE = 0.2
+#: How often a camera has a movement of the paper, one beyond it, or two at once.
+_MOVEMENT_ODDS = (10, 4, 1)
+#: How often one has a view of its own rather than the plain one.
+_VIEW_ODDS = 0.12
+_FURTHER = tuple(word for word in FURTHER_MOVEMENTS if word != "rack-focus")
+_JOINED = (("push", "pull", "zoom-in", "pedestal-up"), ("pan-left", "pan-right", "tilt-up", "arc-left"))
 
 
 @dataclass(frozen=True)
@@ -65,10 +74,22 @@ def _walk(node: SetNode) -> Iterator[SetNode]:
         yield from _walk(child)
 
 
+def split_of(names: Sequence[str]) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """Names to train on, and a fifth of them, at least one, to test on; always the same of the same names."""
+    order = sorted(names, key=lambda name: hashlib.sha256(f"vds test {name}".encode()).digest())
+    count = max(1, round(_TEST_SHARE * len(order)))
+    return tuple(sorted(order[count:])), tuple(sorted(order[:count]))
+
+
 def random_story(
-    catalog: Catalog, place: Place, rng: random.Random, lines: int, cast: tuple[str, ...]
+    catalog: Catalog,
+    place: Place,
+    rng: random.Random,
+    lines: int,
+    cast: tuple[str, ...],
+    cameras: int = 1,
 ) -> str:
-    """A script of so many story lines at a place, each with one fully named camera."""
+    """A script of so many story lines at a place, each with so many fully named cameras."""
     script = [f'storyboard "{place.set} {place.room}"']
     script.extend(
         f"character {who} = {person}" for who, person in zip(_NAMES, rng.sample(cast, 2), strict=True)
@@ -80,23 +101,42 @@ def random_story(
         for a in (catalog.get("action", n) for n in sorted(catalog.names("action")))
         if isinstance(a, ActionDef)
     ]
-    script.extend(_story_line(place, rng, actions) for _ in range(lines))
+    for _ in range(lines):
+        story, other = _story_line(place, rng, actions)
+        shots = dict.fromkeys(_camera(rng, other) for _ in range(cameras))
+        script.extend((f"{story}  {next(iter(shots))}", *(f"    {camera}" for camera in list(shots)[1:])))
     return "\n".join(script) + "\n"
 
 
-def _story_line(place: Place, rng: random.Random, actions: list[ActionDef]) -> str:
+def _story_line(place: Place, rng: random.Random, actions: list[ActionDef]) -> tuple[str, str]:
+    """A line without its cameras, and who else is there."""
     who, other = rng.sample(_NAMES, 2)
-    movement = rng.choice(rng.choice(list(MOVEMENT_FAMILIES.values())))
-    scale = rng.choices(SCALES[:3], (3, 4, 3))[0]
-    camera = f"/ ({movement} {scale} {rng.choice(ANGLES)})"
     for _ in range(50):
         action = rng.choice(actions)
         if action.second == "required":
             continue
         target = _target(place, rng, action, other)
         if target is not None:
-            return f"({who} {action.name}{target})  {camera}"
-    return f"({who} look {other})  {camera}"
+            return f"({who} {action.name}{target})", other
+    return f"({who} look {other})", other
+
+
+def _camera(rng: random.Random, other: str) -> str:
+    """A camera of the whole vocabulary; the paper's sizes and angles twice as often as the others."""
+    kind = rng.choices(("paper", "further", "joined"), _MOVEMENT_ODDS)[0]
+    if kind == "paper":
+        movement = rng.choice(rng.choice(list(MOVEMENT_FAMILIES.values())))
+    elif kind == "further":
+        movement = rng.choice(_FURTHER)
+    else:
+        movement = "+".join(rng.choice(words) for words in _JOINED)
+    scale = rng.choice((*SIZES, "close-up", "medium", "full"))
+    angle = rng.choice((*ALL_ANGLES, *ANGLES, *ANGLES))
+    view = ""
+    if rng.random() < _VIEW_ODDS:
+        view = rng.choice((" two-shot", f" ots {other}"))
+        scale = rng.choice(("medium-close-up", "medium", "cowboy")) if "ots" in view else scale
+    return f"/ ({movement} {scale} {angle}{view})"
 
 
 def _target(place: Place, rng: random.Random, action: ActionDef, other: str) -> str | None:

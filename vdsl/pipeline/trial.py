@@ -160,13 +160,13 @@ def floor_script(placed: str = "", cast: str = "") -> str:
     return "\n".join(lines)
 
 
-def stage_script(text: str, name: str, own: Path | None = None) -> Act:
-    """The first line of a script, staged; ``own``: a script whose definitions count.
+def stage_script(text: str, name: str, own: Path | None = None, line: int = 0) -> Act:
+    """The first line of a script (or another), staged; ``own``: a script whose definitions count.
 
     Raises :class:`NoTrialError`.
     """
     try:
-        return stage_acts(_checked(text, name, own))[0]
+        return stage_acts(_checked(text, name, own))[line]
     except ScriptError as error:
         raise NoTrialError(_told(name, error.report)) from error
 

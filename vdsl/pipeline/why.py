@@ -13,18 +13,15 @@ from pathlib import Path
 from typing import Any
 
 from ..cinema.measures import MEASURES
-from ..cinema.moves import family
 from ..cinema.score import geometry_score
-from ..cinema.telling import NOTES, advantages, compared, faults, is_good, penalties, terms
+from ..cinema.telling import NOTES, faults, is_good, penalties, terms
+from ..emit.reasons import TakeFacts, gains_of, phrases_of, sentence
 from ..emit.storyboard_json import SCHEMA as BUILD_SCHEMA
 from ..emit.storyboard_json import script_digest
 from ..lang.ir import Storyboard
-from .judging import PRIOR, prior
+from .judging import prior
 
 SCHEMA = "vds.why/1"
-_ORDINALS = ("first", "second", "third", "fourth", "fifth", "sixth", "seventh", "eighth", "ninth", "tenth")
-_SAID = 2  # advantages in a sentence
-_WORTH = 0.004  # points of the geometry score below which a difference is not told
 
 
 class NoBuildError(Exception):
@@ -32,23 +29,11 @@ class NoBuildError(Exception):
 
 
 @dataclass(frozen=True)
-class TakeFacts:
-    """One take as a build keeps it. camera: its words; achieved: as read off its track; None: not kept."""
-
-    rank: int
-    score: float
-    camera: dict[str, str]
-    achieved: dict[str, str] | None
-    measures: dict[str, float]
-    params: dict[str, float | str]
-    logit: float | None
-
-
-@dataclass(frozen=True)
 class ShotFacts:
     """A shot with its takes, best first.
 
     origin: ``build`` or ``memory``; stale: the script has changed since; judge: ``ranker`` or ``geometry``
+    placed: why the first take stands before better ones, "" where it is the best
     """
 
     id: str
@@ -62,6 +47,7 @@ class ShotFacts:
     advice: dict[str, Any] | None
     origin: str
     stale: bool = False
+    placed: str = ""
 
 
 # --- facts ------------------------------------------------------------------------------------
@@ -88,9 +74,18 @@ def facts_of_build(folder: Path, storyboard: Storyboard, shot: str) -> ShotFacts
             entry.get("advice"),
             "build",
             document.get("script") != script_digest(storyboard),
+            _placed(document, entry),
         )
     except (KeyError, TypeError, ValueError, AttributeError) as error:
         raise NoBuildError(f"{folder} is damaged ({type(error).__name__}: {error})") from error
+
+
+def _placed(document: Mapping[str, Any], entry: Mapping[str, Any]) -> str:
+    """Why the first take is not simply the best one."""
+    if entry["takes"] and entry["takes"][0].get("chosen"):
+        return "take 1 stands first because it was chosen"
+    kept = [trade["text"] for trade in document.get("trades", ()) if trade["shot"] == entry["id"]]
+    return f"take 1 stands first for the sake of the cuts: {kept[0]}" if kept else ""
 
 
 def _read(path: Path) -> dict[str, Any]:
@@ -131,6 +126,7 @@ def explanation(facts: ShotFacts) -> dict[str, Any]:
         "origin": facts.origin,
         "stale": facts.stale,
         "judge": facts.judge,
+        "placed": facts.placed,
         "proposals": facts.proposals,
         "rejected": dict(sorted(facts.rejected.items(), key=lambda item: (-item[1], item[0]))),
         "advice": facts.advice,
@@ -141,10 +137,14 @@ def explanation(facts: ShotFacts) -> dict[str, Any]:
 def _told(facts: ShotFacts, k: int) -> dict[str, Any]:
     take = facts.takes[k]
     geometry = geometry_score(take.measures)
+    order = list(range(len(facts.takes)))
+    if facts.placed:  # the others stand as they rank
+        best = sum(other.score > facts.takes[0].score for other in facts.takes[1:])
+        order = [*order[1 : best + 1], 0, *order[best + 1 :]]
     return {
         "rank": take.rank,
         "score": take.score,
-        "sentence": sentence(facts.takes, k),
+        "sentence": sentence([facts.takes[i] for i in order], order.index(k)),
         "camera": take.camera,
         "achieved": take.achieved,
         "kept": kept(take),
@@ -181,75 +181,17 @@ def kept(take: TakeFacts) -> dict[str, bool] | None:
     if take.achieved is None:
         return None
     return {
-        "movement": family(take.camera["movement"]) == take.achieved["movement"],
+        "movement": take.camera["movement"] == take.achieved["movement"],
         "scale": take.camera["scale"] == take.achieved["scale"],
-        "angle": take.camera["angle"] == take.achieved["angle"] or "lifted" in take.params,
+        "angle": take.camera["angle"] == take.achieved["angle"],
     }
 
 
 def _against(takes: Sequence[TakeFacts], k: int, other: int) -> dict[str, Any]:
-    gains = _gains(takes[k], takes[other])
+    gains = gains_of(takes[k], takes[other])
     return {
         "rank": takes[other].rank,
-        "better": _phrases(takes[k], takes[other], gains, True),
-        "worse": _phrases(takes[k], takes[other], gains, False),
+        "better": phrases_of(takes[k], takes[other], gains, True),
+        "worse": phrases_of(takes[k], takes[other], gains, False),
         "gains": {name: round(value, 6) for name, value in gains.items()},
     }
-
-
-def _gains(take: TakeFacts, other: TakeFacts) -> dict[str, float]:
-    """Of each part, in log odds where the discriminator judged, in points of the geometry score else."""
-    if take.logit is None or other.logit is None:
-        return advantages(take.measures, other.measures)
-    return advantages(take.measures, other.measures, (take.logit, other.logit), PRIOR)
-
-
-def _phrases(
-    take: TakeFacts, other: TakeFacts, gains: Mapping[str, float], better: bool, rival: str = ""
-) -> list[str]:
-    """What sets two takes apart, most telling first."""
-    least = _WORTH if take.logit is None else _WORTH * PRIOR
-    told = [p for p, gain in gains.items() if (gain if better else -gain) > least]
-    told.sort(key=lambda p: -abs(gains[p]))
-    mine = take.measures | {"logit": take.logit or 0.0}
-    theirs = other.measures | {"logit": other.logit or 0.0}
-    return [compared(p, mine, theirs, better, rival if i == 0 else "") for i, p in enumerate(told)]
-
-
-def sentence(takes: Sequence[TakeFacts], k: int) -> str:
-    """``ranks first: steadier than take 2 and more lead room (0.18 against 0.09); take 3 cuts the feet``."""
-    take = takes[k]
-    place = _ORDINALS[k] if k < len(_ORDINALS) else f"number {k + 1}"
-    if len(takes) == 1:
-        wrong = faults(take.measures, take.camera["movement"])
-        return "the only take" + (f": {_and(wrong[:_SAID])}" if wrong else "")
-    rival = takes[1] if k == 0 else takes[k - 1]
-    gains = _gains(take, rival)
-    first = _phrases(take, rival, gains, k == 0, f"take {rival.rank}")
-    second = _phrases(take, rival, gains, k != 0)
-    words = f"ranks {place}"
-    if first:
-        words += f": {_and(first[:_SAID])}"
-    elif k:
-        words += f": nearly as good as take {rival.rank}"
-    else:
-        words += f": by a hair before take {rival.rank}"
-    if second:
-        words += f", though {_and(second[:1])}"
-    return "; ".join([words, *_others(takes, k)])
-
-
-def _others(takes: Sequence[TakeFacts], k: int) -> list[str]:
-    """Of the best take what is wrong with those after it; of any other what is wrong with itself."""
-    wrong = faults(takes[k].measures, takes[k].camera["movement"])
-    if k:
-        return [f"it {_and(wrong[:_SAID])}"] if wrong else []
-    out = []
-    for other in takes[1:]:
-        worse = [w for w in faults(other.measures, other.camera["movement"]) if w not in wrong]
-        out += [f"take {other.rank} {worse[0]}"] if worse else []
-    return out[:_SAID]
-
-
-def _and(words: Sequence[str]) -> str:
-    return " and ".join(words)

@@ -1,14 +1,17 @@
-"""Whether takes show their subject, by the object ids of small pictures of them: sight tested, not hoped for.
+"""Whether takes show their subject, by the object ids of small pictures of them: sight tested, not hoped for;
+and whether they are what their line says, by what their tracks turn out to be.
 
 Cameras are proposed by lines of sight past upright boxes; curtains, branches and arms are none. Assumes
 judged proposals. Guarantees that of the takes about to be kept, those whose subject is less in the picture
-than was promised give way to the next best, where there are such.
+than was promised, or whose track does not come out as the size, the angle and the movement asked for, give
+way to the next best, where there are such.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,13 +22,14 @@ from ..cinema.subject import Subject
 from ..cinema.track import camera_axes, project
 from ..lang.ir import Shot
 from ..propose.cameras import Filming, find_object, subject_of
+from ..propose.promise import achieved
 from ..propose.types import CameraProposal, ProposalGrid, StoryProposal
 from ..stage.assemble import StagedScene
 from .filming import SEGMENTS, Camerawork, segment_frames, story_palettes
 from .selection import choose_takes
 
-#: The reason under which those that fail are counted, and the measure of those that were looked at.
-REASON = "hidden_in_picture"
+#: The reasons under which those that fail are counted, and the measure of those that were looked at.
+REASON, UNLIKE = "hidden_in_picture", "not_as_asked"
 MEASURE = "picture_visibility"
 _SIZE = (96, 54)
 _POINTS = 1500  # of the subject's surface
@@ -37,17 +41,16 @@ _OUT = 10.0  # taken from the score of what fails, so that anything else goes be
 
 @dataclass(frozen=True, eq=False)
 class Vetted:
-    """order: [P], scores to choose takes by; failed: those that are less seen than was promised."""
+    """order: [P], scores to choose takes by; failed: by index, why each is not to be kept."""
 
     order: NDArray[np.float64]
-    failed: tuple[int, ...]
+    failed: dict[int, str]
 
-    def counted(self, grid: ProposalGrid, kept: Sequence[int]) -> ProposalGrid:
-        """The grid with what was replaced among the rejected."""
-        gone = len(set(self.failed) - set(kept))
-        if not gone:
-            return grid
-        return replace(grid, rejected=dict(sorted((grid.rejected | {REASON: gone}).items())))
+
+def counted(rejected: Mapping[str, int], failed: Mapping[int, str], kept: Sequence[int]) -> dict[str, int]:
+    """What was rejected, with those that failed and were replaced."""
+    gone = Counter(why for i, why in failed.items() if i not in kept)
+    return dict(sorted((dict(rejected) | gone).items()))
 
 
 def vet(
@@ -63,21 +66,33 @@ def vet(
     """
     order = np.asarray(scores, float).copy()
     looked: set[int] = set()
-    failed: list[int] = []
+    failed: dict[int, str] = {}
     for _ in range(_ROUNDS):
         fresh = [i for i in choose_takes(grid.cameras, order, count) if i not in looked]
         if not fresh:
             break
         looked.update(fresh)
+        failed |= dict.fromkeys((i for i in fresh if not _as_asked(grid, i, scene)), UNLIKE)
         for i, share in zip(fresh, _shares(grid, fresh, scene, camerawork), strict=True):
             if np.isnan(share):
                 continue
             measures = grid.cameras[i].measures
             measures[MEASURE] = float(share)
             if share < min(_PROMISED, measures["visibility"]) - _SLACK:
-                order[i] -= _OUT
-                failed.append(i)
-    return Vetted(order, tuple(failed))
+                failed[i] = REASON
+        order[[i for i in fresh if i in failed]] -= _OUT
+    return Vetted(order, failed)
+
+
+def _as_asked(grid: ProposalGrid, i: int, scene: tuple[StagedScene, Shot, Filming]) -> bool:
+    """Whether a take of somebody came out as the line's words; through somebody's eyes there is no angle."""
+    _, shot, filming = scene
+    camera = grid.cameras[i]
+    subject = subject_of(shot, next(s for s in grid.story if s.index == camera.story), filming)
+    if subject.kind != "person" or filming.rig == "paper":
+        return True
+    kept = achieved(camera, subject, filming.rig).kept(camera)
+    return all(came for word, came in kept.items() if shot.view != "pov" or word == "movement")
 
 
 def _shares(

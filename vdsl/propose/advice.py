@@ -7,51 +7,80 @@ among a few candidates of its own.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from runtime.world import WorldObject
 
-from ..cinema.measures import samples
 from ..cinema.sight import blockers
 from ..cinema.space import nearby, stage_of
 from ..cinema.subject import SIGHT, Subject
+from ..cinema.takes import samples
 from ..lang.ir import ALL_ANGLES, ANGLES, SCALES, SIZES, Shot
 from .cameras import Filming, Tried, subject_of, try_cameras
 from .drawing import draw, generator
 from .rejection import REASONS
 from .types import Advice, StoryProposal
 
+_STEPS = 5  # sizes nearer or farther that still are the same shot, more or less
 _TRIED = 48  # candidates of an alternative
+_WAYS = 3  # in which a line is played that are looked at
 _LENSES = (50.0, 35.0, 24.0, 18.0)
+_LONGER = (85.0, 100.0, 135.0, 200.0)
 _NO_ROOM = ("in_wall", "in_object", "too_far_outside", "through_ceiling", "below_floor")
 
 
-def advise(shot: Shot, story: StoryProposal, filming: Filming) -> Advice:
-    """Look at what is in the way; try every other size and angle, shorter lenses, and standing still."""
+def advise(
+    shot: Shot, story: StoryProposal, filming: Filming, others: Sequence[StoryProposal] = ()
+) -> Advice:
+    """Look at what is in the way; try every other size and angle, shorter lenses, and standing still.
+
+    others: more ways the line may be played, in which an alternative may hold where the first has no room
+    """
     failed = _Failed(shot, story, subject_of(shot, story, filming), filming, _try(shot, story, filming, 192))
-    return Advice(_why(failed), tuple(_instead(shot, story, filming)))
+    ways = (story, *others[: _WAYS - 1])
+    instead = tuple(_instead(shot, ways, filming))
+    return Advice(_why(failed), instead or tuple(_together(shot, ways, filming)))
 
 
 def _try(shot: Shot, story: StoryProposal, filming: Filming, count: int = _TRIED) -> Tried:
     subject = subject_of(shot, story, filming)
     stage = stage_of(filming.world, subject.position[[0, -1]])
-    sample = draw(shot, 1, count, generator(filming.seed, shot.id, "advice"))
+    sample = draw(shot, 1, count, generator(filming.seed, shot.drawn_as, "advice"))
     return try_cameras(shot, story, subject, stage, filming, sample, np.arange(count))
 
 
 # --- what would work --------------------------------------------------------------------------
 
 
-def _instead(shot: Shot, story: StoryProposal, filming: Filming) -> Iterator[str]:
+def _works(shot: Shot, ways: Sequence[StoryProposal], filming: Filming) -> bool:
+    return any(bool((_try(shot, way, filming).reason < 0).any()) for way in ways)
+
+
+def _together(shot: Shot, ways: Sequence[StoryProposal], filming: Filming) -> Iterator[str]:
+    """The nearest size that has survivors of a camera that stands still, where no word alone helps."""
+    if "static" in shot.movements:
+        return
+    asked = [SIZES.index(s) for s in shot.scales]
+    known = (s for s in (SCALES if filming.rig == "paper" else SIZES) if s not in shot.scales)
+    for size in sorted(known, key=lambda s: min(abs(SIZES.index(s) - k) for k in asked)):
+        if _works(replace(shot, movements=("static",), scales=(size,)), ways, filming):
+            yield f"static {size}"
+            return
+
+
+def _instead(shot: Shot, ways: Sequence[StoryProposal], filming: Filming) -> Iterator[str]:
     """Words that have survivors where they stand in the line instead; of each kind the nearest first."""
     paper = filming.rig == "paper"
     known, angles = (SCALES, ANGLES) if paper else (SIZES, ALL_ANGLES)
     asked = [SIZES.index(s) for s in shot.scales]
-    sizes = sorted(set(known) - set(shot.scales), key=lambda s: min(abs(SIZES.index(s) - k) for k in asked))
+    steps = {s: min(abs(SIZES.index(s) - k) for k in asked) for s in known if s not in shot.scales}
+    sizes = sorted((s for s in steps if steps[s] <= _STEPS), key=lambda s: steps[s])
     shorter = [] if paper else [f for f in _LENSES if f < shot.lens[0] - 1.0]
+    if shot.view in ("ots", "pov"):  # whose place is given
+        shorter += [f for f in _LONGER if f > shot.lens[1] + 1.0]
     kinds: tuple[tuple[int, list[tuple[str, Shot]]], ...] = (
         (2, [(s, replace(shot, scales=(s,))) for s in sizes]),
         (1, [(a, replace(shot, angles=(a,))) for a in angles if a not in shot.angles]),
@@ -59,7 +88,7 @@ def _instead(shot: Shot, story: StoryProposal, filming: Filming) -> Iterator[str
         (1, [("static", replace(shot, movements=("static",)))] if "static" not in shot.movements else []),
     )
     for most, options in kinds:
-        worked = (words for words, other in options if (_try(other, story, filming).reason < 0).any())
+        worked = (words for words, other in options if _works(other, ways, filming))
         yield from (words for _, words in zip(range(most), worked, strict=False))
 
 
@@ -119,8 +148,9 @@ def _why(failed: _Failed) -> str:
 def _cramped(failed: _Failed) -> str:
     """``the corridor is 1.2 m wide, and a wide eye-level shot stands 4.1 m away or more``."""
     counts = failed.counts
-    reach = failed.tried.shooting.track
-    least = float(np.linalg.norm(reach.position - reach.look_at, axis=-1).min(axis=1).min())
+    shooting, rows = failed.tried.shooting, np.arange(len(failed.tried.reason))
+    track, key = shooting.track, shooting.key  # nearer along the way does not count
+    least = float(np.linalg.norm(track.position[rows, key] - track.look_at[rows, key], axis=-1).min())
     away = f"{failed.shown} stands {least:.1f} m away or more"
     inside = failed.item(_stood_in(failed))
     if inside and counts["in_object"] > counts["too_far_outside"] + counts["in_wall"]:
@@ -179,6 +209,19 @@ def _out_of_frame(failed: _Failed) -> str:
     return f"{failed.whom} leaves the frame of {failed.shown}, going {failed.subject.travel():.1f} m"
 
 
+def _wrong_view(failed: _Failed) -> str:
+    """Over a shoulder: how far the two are apart, and what the lenses make of it; else who is not seen."""
+    shot, subject = failed.shot, failed.subject
+    if subject.via is None:
+        return f"{failed.shown} does not show everybody at its first and last frame"
+    apart = float(np.linalg.norm(subject.via - subject.landmarks["eyes"], axis=1).min())
+    low, high = shot.lens
+    lens = f"lens {low:.0f}mm" if high - low < 1.0 else f"lenses of {low:.0f} to {high:.0f} mm"
+    who = shot.whose[0] if shot.whose else "the other"
+    shown = failed.shown.partition(" ")[2]
+    return f"{failed.whom} is {apart:.1f} m from {who}, and {lens} put no {shown} over that shoulder"
+
+
 def _no_backdrop(failed: _Failed) -> str:
     return f"{failed.shown} has no wall left behind {failed.whom}"
 
@@ -189,4 +232,5 @@ _TOLD: dict[str, Callable[[_Failed], str]] = {
     "in_person": _in_person,
     "subject_out_of_frame": _out_of_frame,
     "missing_backdrop": _no_backdrop,
+    "wrong_view": _wrong_view,
 }

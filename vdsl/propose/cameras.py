@@ -8,59 +8,36 @@ whatever else was proposed before.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from runtime.body.skeleton import JOINT, Skeleton
-from runtime.nav import level_at
-from runtime.world import World, WorldObject
-
-from ..cinema import rig_cinema, rig_paper
-from ..cinema.measures import Measured, Takes, measure, samples
+from ..cinema.measures import Measured, measure
 from ..cinema.score import geometry_scores
 from ..cinema.sizes import Size, size_of
 from ..cinema.space import Stage, nearby, stage_of
-from ..cinema.subject import Subject, group, person, place, thing
-from ..cinema.track import CameraTrack
-from ..lang.ir import Shot, Target
-from ..library import Catalog
+from ..cinema.subject import Subject
+from ..cinema.takes import Takes, samples
+from ..lang.ir import Shot
+from .candidates import Shooting
 from .drawing import Sample, draw, generator, nudged
+from .focusing import focused, unseen_racks
 from .rejection import REASONS, SOFT, no_room, reasons
-from .shooting import Shooting, shoot
-from .types import STILL, CameraProposal, ProposalGrid, StoryProposal
+from .shooting import shoot
+from .subjects import Filming as Filming
+from .subjects import find_object as find_object
+from .subjects import foci_of, pillars_of
+from .subjects import subject_of as subject_of
+from .types import CameraProposal, ProposalGrid, StoryProposal
+
+Array = NDArray[np.float64]
 
 _ROUNDS = 8
-_HOPE = 0.8  # of the share that was good so far: what is counted on in the next round
-_MOST = 10  # candidates in one round, for each that is wanted
+_HOPE = 0.6  # of the share that was good so far: what is counted on in the next round
+_MOST = 12  # candidates in one round, for each that is wanted
 _FEW = 8  # with fewer takes than this, ones that only look less well are let back in
-_MARGIN = 0.22  # radius of a person in somebody else's way, metres
-_NECK = 0.09  # of one over whose shoulder one looks
-
-
-@dataclass(frozen=True, eq=False)
-class Filming:
-    """What cameras need to know of a scene.
-
-    skeletons: of everyone in it; fps: frames a second; rig: cinema or paper; aspect: picture width/height
-    room: path of the room an establishing shot shows, () for the whole set
-    catalog: where the actions of story lines are defined; cameras alone need none
-    """
-
-    world: World
-    skeletons: Mapping[str, Skeleton]
-    fps: float
-    seed: int
-    rig: str = "cinema"
-    aspect: float = 16 / 9
-    room: tuple[str, ...] = ()
-    catalog: Catalog | None = None
-
-    @property
-    def sensor(self) -> tuple[float, float]:
-        return (rig_paper if self.rig == "paper" else rig_cinema).sensor(self.aspect)
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,7 +66,7 @@ def propose_cameras(shot: Shot, stories: Sequence[StoryProposal], filming: Filmi
         # a few more than are wanted: another round costs more than they do
         share = max(_HOPE * good / considered, 0.05) if considered else 0.75
         count = int(np.clip((wanted - good) / share, 16, _MOST * wanted))
-        rng = generator(filming.seed, shot.id, f"cameras {number}")
+        rng = generator(filming.seed, shot.drawn_as, f"cameras {number}")
         sample = draw(shot, len(stories), count, rng)
         if number == _ROUNDS:  # what the grid has no room for may have some beside it
             sample = nudged(sample, rng)
@@ -106,90 +83,6 @@ def propose_cameras(shot: Shot, stories: Sequence[StoryProposal], filming: Filmi
     cameras = tuple(_proposal(i, batches[b], p, shot) for i, (b, p) in enumerate(chosen))
     counts = {k: v for k, v in sorted(rejected.items()) if v > 0}
     return ProposalGrid(shot.id, name, tuple(stories), cameras, considered, counts, len(let_in))
-
-
-def subject_of(shot: Shot, story: StoryProposal, filming: Filming) -> Subject:
-    """Whom or what the shot's cameras are about."""
-    if shot.view in ("two-shot", "group"):
-        everybody = _together(shot, story, filming)
-        return everybody if everybody is not None else _focused(shot, story, filming)
-    subject = _focused(shot, story, filming)
-    owner = shot.whose[0] if shot.view and shot.whose else ""
-    if owner not in story.performances or owner == subject.name:
-        return subject
-    return replace(subject, via=_person(owner, story, filming).landmarks["eyes"])
-
-
-def _person(name: str, story: StoryProposal, filming: Filming) -> Subject:
-    acted = story.performances[name]
-    return person(name, filming.skeletons[name], acted.world_from_joint, acted.position, acted.heading)
-
-
-def _together(shot: Shot, story: StoryProposal, filming: Filming) -> Subject | None:
-    """Two people, or all, as one subject: those of the line first, then who is nearest to them."""
-    first = [name for name in shot.whose if name in story.performances]
-    if shot.focus is not None and shot.focus.path[-1] in story.performances:
-        first.insert(0, shot.focus.path[-1])
-    people = {name: _person(name, story, filming) for name in story.performances}
-    if not people:
-        return None
-    middle = people[(first or list(people))[0]].position.mean(axis=0)
-    away = {n: float(np.linalg.norm(p.position.mean(axis=0) - middle)) for n, p in people.items()}
-    by_distance = sorted(people, key=lambda name: away[name])
-    order = list(dict.fromkeys((*first, *by_distance)))
-    return group([people[name] for name in (order[:2] if shot.view == "two-shot" else order)])
-
-
-def _focused(shot: Shot, story: StoryProposal, filming: Filming) -> Subject:
-    focus = shot.focus
-    if focus is None or _establishes(shot, story):
-        return _room_subject(filming, story.frames)
-    if focus.kind == "character" and focus.path[-1] in story.performances:
-        return _person(focus.path[-1], story, filming)
-    item = find_object(filming.world, focus)
-    return (
-        _room_subject(filming, story.frames) if item is None else _thing_subject(item, story, filming.world)
-    )
-
-
-def _establishes(shot: Shot, story: StoryProposal) -> bool:
-    """Whether a shot in which nobody acts shows the place: it is wide, and nobody was named as its focus."""
-    named = shot.focus is not None and shot.focus.span.text == shot.focus.written
-    return story.variant == STILL and not named and set(shot.scales) <= {"extreme-wide", "wide", "full"}
-
-
-def find_object(world: World, target: Target) -> WorldObject | None:
-    """The object a target names, or the one its spot belongs to: the longest path that matches."""
-    paths = {item.path: item for item in world.objects}
-    for end in range(len(target.path), 0, -1):
-        if target.path[:end] in paths:
-            return paths[target.path[:end]]
-    return None
-
-
-def _room_subject(filming: Filming, frames: int) -> Subject:
-    item = next((o for o in filming.world.objects if o.path == filming.room and filming.room), None)
-    if item is not None:
-        return place(item.path[-1], item.low, item.high, frames)
-    floors = np.array(filming.world.floors or ((-2.0, -2.0, 2.0, 2.0),))
-    low, high = floors[:, :2].min(axis=0), floors[:, 2:].max(axis=0)
-    return place(filming.world.name, (*low.tolist(), 0.0), (*high.tolist(), 2.6), frames)
-
-
-def _thing_subject(item: WorldObject, story: StoryProposal, world: World) -> Subject:
-    name = item.path[-1]
-    low, high = (np.tile(corner, (story.frames, 1)) for corner in (item.low, item.high))
-    if item.kind in ("room", "area"):
-        return replace(place(name, item.low, item.high, story.frames), name=name)
-    moved = story.props.get(item.id)
-    if moved is not None:
-        shift = moved[:, :3, 3].astype(float) - item.world_from_object[:3, 3]
-        low, high = low + shift, high + shift
-    stand = item.spot("stand")
-    facing = 0.0 if stand is None or stand.facing is None else stand.facing + np.pi
-    x, y, _ = item.centre
-    floor = world.storeys[level_at(world, (x, y, item.low[2]))].height
-    return thing(name, low, high, facing, floor)
 
 
 def _consider(
@@ -251,6 +144,8 @@ def try_cameras(
 ) -> Tried:
     """Shoot the sampled rows on one story; what has room is measured and judged."""
     shooting = shoot(shot, subject, sample, rows, filming.rig, filming.sensor, filming.fps)
+    foci = foci_of(shot, subject, story, filming)
+    shooting = focused(shooting, shot, foci, filming.fps)
     solids, at = filming.world.solids, samples(subject.frames)
     near = nearby(solids, shooting.track.position[:, at])
     reason = no_room(shooting, near, solids, stage, at)
@@ -261,6 +156,14 @@ def try_cameras(
     takes = replace(_takes(shot, subject, left, story, filming), near=near.only(kept))
     measured = measure(takes, subject, filming.world, filming.fps)
     reason[kept] = reasons(left, measured, subject)
+    if foci.end is not None:
+        goal = shot.focus_to.path[-1] if shot.focus_to is not None else ""
+        pillars = [(foot[at], crown[at], r) for foot, crown, r in pillars_of(shot, story, {goal})]
+        item = find_object(filming.world, shot.focus_to) if shot.focus_to is not None else None
+        own = item.id if item is not None else None
+        lost = unseen_racks(left, foci, solids, measured.hidden, pillars, at, own)
+        soft = np.isin(reason[kept], (-1, *SOFT))  # else they might be let back in
+        reason[kept[lost & soft]] = REASONS.index("wrong_movement")
     return Tried(shooting, reason, kept, measured)
 
 
@@ -270,16 +173,9 @@ def _takes(shot: Shot, subject: Subject, shooting: Shooting, story: StoryProposa
     if subject.kind == "thing" and shot.focus is not None:
         item = find_object(filming.world, shot.focus)
         ignore = item.id if item is not None else None
-    others = []
-    seen = {subject.name, *subject.heads, *(shot.whose if shot.view == "pov" else ())}
-    for name, acted in story.performances.items():
-        if name not in seen:
-            joints = acted.world_from_joint
-            crown = joints[:, JOINT["head"], :3, 3].astype(float) + np.array((0.0, 0.0, 0.12))
-            foot = joints[:, JOINT["hips"], :3, 3].astype(float)
-            foot[:, 2] = acted.position[:, 2]
-            shoulder = shot.view == "ots" and name in shot.whose
-            others.append((foot, crown, _NECK if shoulder else _MARGIN))
+    others = pillars_of(
+        shot, story, {subject.name, *subject.heads, *(shot.whose if shot.view == "pov" else ())}
+    )
     window = shooting.window(samples(subject.frames), subject.frames)
     return Takes(
         shooting.track,
@@ -340,9 +236,7 @@ def _proposal(index: int, batch: _Batch, row: int, shot: Shot) -> CameraProposal
         scale=batch.shooting.scales[row],
         angle=batch.shooting.angles[row],
         params=batch.shooting.params(row, shot.roll),
-        track=CameraTrack(
-            track.position[row], track.rotation[row], track.focal[row], track.look_at[row], track.sensor
-        ),
+        track=track.only(row),
         hidden_walls=batch.measured.hidden[row],
         unseen=shot.whose[0] if shot.view == "pov" and shot.whose else "",
         measures=values,

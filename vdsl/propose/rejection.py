@@ -14,8 +14,8 @@ from ..cinema.measures import Measured
 from ..cinema.moves import FLOOR_CLEARANCE, families
 from ..cinema.space import Nearby, Stage, clearance
 from ..cinema.subject import Subject
-from ..cinema.vectors import length
-from .shooting import Shooting
+from ..cinema.vectors import dot, length
+from .candidates import Shooting
 
 #: In the order they are asked; a candidate is counted under the first that holds.
 REASONS = (
@@ -34,14 +34,12 @@ REASONS = (
     "too_fast",
     "missing_backdrop",
 )
-#: What may be let pass where hardly anything else is left: the take is possible, only less good.
+#: What may be let pass where hardly anything else is left: the take does what its line says, only less well.
 SOFT = tuple(
     REASONS.index(r)
     for r in (
         "subject_hidden",
         "subject_out_of_frame",
-        "wrong_size",
-        "wrong_angle",
         "too_fast",
         "missing_backdrop",
     )
@@ -57,7 +55,10 @@ _ABOVE = 1.6  # metres over a ceiling
 #: Movements that change the size, and those that keep it and the subject all the time.
 _RESIZE = {"push", "pull", "zoom", "tilt", "pan", "whip-pan"}
 _KEEP = {"follow", "arc", "crane", "dolly-zoom", "handheld", "roll"}
+#: What comes nearer or goes back straight, and what leaves it so.
+_STRAIGHT, _BESIDES = {"push", "pull", "dolly-zoom"}, {"roll", "static"}
 _FASTEST, _TURNS = 5.0, 130.0  # metres and degrees a second
+_GROUND = 0.45  # metres over the floor of a lens that lies on the ground
 
 
 def no_room(
@@ -110,6 +111,7 @@ def reasons(shooting: Shooting, measured: Measured, subject: Subject) -> NDArray
     moving = np.array([bool(families(m) & _RESIZE) for m in shooting.movements])
     whips = np.array(["whip-pan" in families(m) for m in shooting.movements])
     moving |= shooting.view == "pov"  # its owner goes nearer, or farther
+    slides = np.array([bool(families(m) & {"dolly", "pedestal"}) for m in shooting.movements])
     keeps = np.array([families(m) <= _KEEP for m in shooting.movements])
     drift = np.where(moving, 0.0, v["size_drift"])
     holds = np.where(keeps & (not paper), 0.45, 0.9)
@@ -118,10 +120,14 @@ def reasons(shooting: Shooting, measured: Measured, subject: Subject) -> NDArray
         "in_wall": measured.shown < _NEAR_WALL * _arm(shooting),
         "in_person": (measured.people < _NEAR_PERSON) | ((own < _NEAR_FACE) & (subject.kind == "person")),
         "subject_out_of_frame": v["in_frame"] < np.where(keeps, 0.85, 0.5 if walked > 0.5 else 0.7),
-        "subject_hidden": (v["visibility"] < 0.6) | (v["head_visible"] < 0.5) | (v["foreground"] > 0.5),
+        "subject_hidden": (v["visibility"] < 0.6)
+        | (v["ends_visible"] < 0.4)
+        | (v["head_visible"] < 0.5)
+        | (v["foreground"] > 0.5),
         "wrong_view": v["view"] < 0.7,
-        "wrong_movement": _does_not_rise(shooting),
-        "wrong_size": (v["size_error"] > (0.6 if paper else 0.25)) | (drift > holds),
+        "wrong_movement": _does_not_move(shooting, v),
+        "wrong_size": (v["size_error"] > np.where(slides & (not paper), 0.1, 0.6 if paper else 0.19))
+        | (drift > holds),
         "wrong_angle": _wrong_angle(shooting, v, subject),
         "too_fast": (v["speed"] > _FASTEST) | ((v["angular_speed"] > _TURNS) & ~whips),
         "missing_backdrop": v["backdrop_gap"] > 0.12,
@@ -129,15 +135,33 @@ def reasons(shooting: Shooting, measured: Measured, subject: Subject) -> NDArray
     return _first(asked, len(shooting.movements))
 
 
-def _does_not_rise(shooting: Shooting) -> NDArray[np.bool_]:
-    """Pedestals and cranes that floor or zenith leave hardly any way."""
+def _does_not_move(shooting: Shooting, v: Mapping[str, NDArray[np.float64]]) -> NDArray[np.bool_]:
+    """Pedestals and cranes that floor or zenith leave hardly any way; pushes and pulls that are not seen, or
+    that the floor bends; pairs whose parts undo each other."""
     if shooting.rig == "paper":
         return np.zeros(len(shooting.movements), bool)
-    position, pitch = shooting.track.position, shooting.track.rotation[..., 1]
-    pedestals = np.array(["pedestal" in families(m) for m in shooting.movements])
-    cranes = np.array(["crane" in families(m) for m in shooting.movements])
-    risen = np.abs(position[:, -1, 2] - position[:, 0, 2])
-    return np.asarray((pedestals & (risen < 0.1)) | (cranes & (np.ptp(pitch, axis=1) < np.radians(10.0))))
+    track = shooting.track
+    kinds = [families(m) for m in shooting.movements]
+    pedestals, cranes = (np.array([kind in each for each in kinds]) for kind in ("pedestal", "crane"))
+    nears = np.array([bool({"push", "pull"} & each) for each in kinds])
+    risen = np.abs(track.position[:, -1, 2] - track.position[:, 0, 2])
+    away = length(track.position - track.look_at)
+    nearer = np.abs(away[:, -1] - away[:, 0])
+    straight = np.array([bool(each & _STRAIGHT) and each <= _STRAIGHT | _BESIDES for each in kinds])
+    arm = (track.position - track.look_at) / away[..., None]
+    bent = np.arccos(np.clip(dot(arm[:, 0], arm[:, -1]), -1.0, 1.0))
+    pairs = np.array([len(each) > 1 for each in kinds])
+    grazes = track.position[..., 2].min(axis=1) < shooting.floor + FLOOR_CLEARANCE + 1e-6
+    view = away.max(axis=1) * track.sensor[1] / track.focal.min(axis=1)
+    turned = np.ptp(track.rotation[..., 1], axis=1)
+    return np.asarray(
+        (pedestals & (risen < np.maximum(0.1, 0.27 * view)))
+        | (cranes & (turned < np.radians(10.0)))
+        | (straight & (bent > np.radians(3.0)))
+        | (nears & pairs & grazes & (np.ptp(track.position[..., 2], axis=1) > 0.03 * away[:, 0]))
+        | (pedestals & nears & (grazes | (v["elevation"] > 60.0)))  # from above they are the same
+        | (nears & (nearer < np.maximum(0.025, 0.04 * away[:, 0])))
+    )
 
 
 def _wrong_angle(
@@ -147,15 +171,15 @@ def _wrong_angle(
     out = np.zeros(len(shooting.angles), bool)
     if shooting.rig == "paper":
         return out
-    tilts = np.array([bool(families(m) & {"tilt", "pedestal"}) for m in shooting.movements])
     asked = np.array(shooting.angles)
     elevation, height = np.radians(values["elevation"]), values["height"]
+    lies = (height < _GROUND) & (elevation < -np.radians(1.0))
     for angle in set(shooting.angles):
         level = lens_height(angle, subject.landmarks, subject.floor, subject.kind)
         if level is not None:
             level = np.broadcast_to(level, subject.frames)[shooting.key] - subject.floor
         shown = shows(angle, elevation, height, level)
         if angle in ("low-angle", "worms-eye"):
-            shown |= shooting.lifted > 1e-9
+            shown |= lies
         out |= (asked == angle) & ~shown
-    return np.asarray(out & ~tilts)
+    return out

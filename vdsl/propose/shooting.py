@@ -2,21 +2,21 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields, replace
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..cinema import rig_cinema, rig_paper
 from ..cinema.angles import CINEMA_THETA, lens_height
-from ..cinema.framing import basis
+from ..cinema.framing import FLAT, basis
 from ..cinema.further import FURTHER, Part, combined
-from ..cinema.moves import FLOOR_CLEARANCE, SIGN, Draw, families, family, track_of
-from ..cinema.sizes import size_of
+from ..cinema.moves import SIGN, Draw, families, family, of_camera, track_of
+from ..cinema.sizes import Size, size_of
 from ..cinema.subject import Subject, anchor
 from ..cinema.subspaces import ASIDE, AZIMUTHS, FILM, LEAD, TRAVELS, mu_range, turn_range
-from ..cinema.track import CameraTrack
 from ..lang.ir import Shot
+from .candidates import Shooting, joined
 from .drawing import Sample
 from .views import eyes_track, over_shoulder, through_eyes
 
@@ -33,117 +33,6 @@ _SHORTER = {
     "overhead": 3.0,
     "worms-eye": 2.0,
 }
-
-
-@dataclass(frozen=True, eq=False)
-class Shooting:
-    """P candidates of one story, shot.
-
-    order: [P] which of the given rows each is; movements, scales, angles: words, P each
-    key: frame the framing is of; draw: what was drawn, all [P], second:
-    the same for the second of two movements at once; lifted: radians off the asked angle to
-    stay above the floor; relative: azimuth from the subject's heading, radians
-    floor: height of the subject's floor, above which cameras stay; view: as in the shot
-    """
-
-    rig: str
-    track: CameraTrack
-    order: NDArray[np.int64]
-    movements: tuple[str, ...]
-    scales: tuple[str, ...]
-    angles: tuple[str, ...]
-    key: NDArray[np.int64]
-    draw: Draw
-    second: Draw
-    lifted: Array
-    relative: Array
-    height: Array
-    floor: float = 0.0
-    view: str = ""
-
-    @property
-    def strata(self) -> NDArray[np.int64]:
-        """λ and end of each candidate as one small number, for variety."""
-        lam = np.unique(self.draw.lam, return_inverse=True)[1]
-        return np.asarray(2 * lam + self.draw.key)
-
-    def only(self, rows: NDArray[np.int64]) -> Shooting:
-        """Some of the candidates."""
-        t = self.track
-        return Shooting(
-            self.rig,
-            CameraTrack(t.position[rows], t.rotation[rows], t.focal[rows], t.look_at[rows], t.sensor),
-            self.order[rows],
-            tuple(self.movements[p] for p in rows),
-            tuple(self.scales[p] for p in rows),
-            tuple(self.angles[p] for p in rows),
-            self.key[rows],
-            Draw(*(getattr(self.draw, f.name)[rows] for f in fields(Draw))),
-            Draw(*(getattr(self.second, f.name)[rows] for f in fields(Draw))),
-            self.lifted[rows],
-            self.relative[rows],
-            self.height[rows],
-            self.floor,
-            self.view,
-        )
-
-    def window(self, at: NDArray[np.int64], frames: int) -> NDArray[np.bool_]:
-        """bool [P, F]: sampled frames at which the subject is meant to be in the picture."""
-        time = at / max(frames - 1, 1)
-        out = np.ones((len(self.movements), len(at)), bool)
-        for p, movement in enumerate(self.movements):
-            kinds = families(movement)
-            if kinds & {"whip-pan"}:
-                out[p] = time >= 0.65
-            elif kinds & {"tilt", "pan"}:
-                out[p] = time >= 0.75 if self.draw.on[p] else time <= 0.25
-                out[p, -1 if self.draw.on[p] else 0] = True
-            elif kinds & {"dolly", "pedestal"} and self.draw.travel[p] > 0 and self.draw.before[p] != 0.5:
-                out[p] = time >= 0.4 if self.draw.before[p] == 1.0 else time <= 0.6
-        return out
-
-    def params(self, p: int, roll: float) -> dict[str, float | str]:
-        """The drawn variables of one candidate, as docs/cinema.md lists them."""
-        d, kind = self.draw, family(self.movements[p])
-        out: dict[str, float | str] = {
-            "r": float(d.r[p]),
-            "theta": float(d.theta[p]),
-            "phi": float(d.phi[p]),
-            "azimuth": float(self.relative[p]),
-            "focal": float(d.focal[p]),
-            "lambda": float(d.lam[p]),
-            "roll": roll,
-            "floor_clearance": FLOOR_CLEARANCE,
-            "reference": "end" if d.key[p] else "start",
-        }
-        if self.rig == "paper":
-            out["reference_height"] = float(self.height[p])
-        else:
-            out |= {f"offset_{a}": float(d.offset[p, k]) for k, a in enumerate("xyz")}
-        first, _, too = self.movements[p].partition("+")
-        out |= _moved(first, d, p, "")
-        if too:
-            out |= {"lambda_2": float(self.second.lam[p])} | _moved(too, self.second, p, "_2")
-        if kind in ("dolly", "pedestal"):
-            for word, t in (("start", 0), ("end", -1)):
-                out |= {f"{word}_{a}": float(self.track.position[p, t, k]) for k, a in enumerate("xyz")}
-        low = float(self.track.position[p, :, 2].min()) - self.floor
-        if self.lifted[p] > 1e-9 or low <= FLOOR_CLEARANCE + 1e-9:
-            out["lifted"] = float(self.lifted[p])
-        return out
-
-
-def _moved(movement: str, d: Draw, p: int, suffix: str) -> dict[str, float | str]:
-    """What was drawn for one movement."""
-    kind = family(movement)
-    out: dict[str, float | str] = {}
-    if kind in ("push", "pull", "zoom", "dolly-zoom"):
-        out["mu"] = float(d.mu[p])
-    if kind in ("tilt", "pan", "arc", "crane", "roll", "whip-pan"):
-        out["turn"] = float(SIGN[movement] * d.turn[p])
-    if kind in ("tilt", "pan", "roll"):
-        out["ending"] = "on" if d.on[p] else "off"
-    return {name + suffix: value for name, value in out.items()}
 
 
 def shoot(
@@ -163,7 +52,7 @@ def shoot(
             local = np.flatnonzero((sample.movement[rows] == m) & (sample.scale[rows] == s))
             if len(local):
                 parts.append(_shoot_one(shot, subject, sample, rows, local, movement, scale, rig, film, fps))
-    found = parts[0] if len(parts) == 1 else _joined(parts)
+    found = parts[0] if len(parts) == 1 else joined(parts)
     return _raised(replace(found, view=shot.view), floor)
 
 
@@ -190,12 +79,12 @@ def _shoot_one(
 ) -> Shooting:
     """All candidates of one movement and one scale."""
     i = rows[local]
-    words, last = movement.split("+"), subject.frames - 1
+    words, last = of_camera(movement).split("+"), subject.frames - 1
     kind = family(words[0])
     key, on = _keys(words, sample.key[i].copy(), sample.on[i], rig, shot.view, asked_high(shot, sample, i))
     at = np.where(key == 1, last, 0)
-    mu = _mu(words[0], sample.mu[i])
-    mu_too = _mu(words[-1], sample.mu[i][::-1])
+    mu = _mu(words[0], sample.mu[i], rig)
+    mu_too = _mu(words[-1], sample.mu[i][::-1], rig)
     angles = tuple(shot.angles[k] for k in sample.angle[i])
     bias = 1.5 if subject.kind == "place" else 1.0
     bend = np.array([bias * _SHORTER.get(scale, 1.0) * _SHORTER.get(a, 1.0) for a in angles])
@@ -210,7 +99,7 @@ def _shoot_one(
         path = subject.position + np.array((0.0, 0.0, rig_paper.reference_height(scale, subject.height)))
         r = rig_paper.radius(scale, subject.height, focal)
         theta = np.array([rig_paper.theta(a) for a in angles])
-        offset, lifted = np.zeros((len(i), 3)), np.zeros(len(i))
+        offset, lifted, rise = np.zeros((len(i), 3)), np.zeros(len(i)), np.zeros(len(i))
         height = np.full(len(i), rig_paper.reference_height(scale, subject.height))
     else:
         size = size_of(subject.kind, scale)
@@ -235,13 +124,14 @@ def _shoot_one(
         else:
             framing = framed(phi, focal)
         r, theta, offset, lifted = framing.r * sample.reach[i], framing.theta, framing.offset, framing.lifted
+        rise = _rise(subject, size, at, r * film[1] / focal, theta)
         height = np.zeros(len(i))
         for word, factor in zip(words, (mu, mu_too), strict=False):
             if family(word) in ("push", "pull"):
                 r = np.where(key == 1, r / factor, r)
     travel, before, key = _travel(subject, words[0], sample, i, r, focal, film, phi, key)
     turn = _turn(kind, sample.turn[i])
-    draw = Draw(r, theta, phi, focal, offset, sample.lam[i], mu, turn, travel, before, key, on)
+    draw = Draw(r, theta, phi, focal, offset, sample.lam[i], mu, turn, travel, before, key, on, rise)
     travel, before, _ = _travel(subject, words[-1], sample, i, r, focal, film, phi, key)
     turn = _turn(family(words[-1]), 1.0 - sample.turn[i])
     second = replace(draw, lam=sample.lam_too[i], mu=mu_too, turn=turn, travel=travel, before=before)
@@ -251,7 +141,7 @@ def _shoot_one(
         parts = [Part(words[0], draw), Part(words[-1], second)][: len(words)]
         track = combined(parts, path, film, shot.roll, fps, sample.noise[i])
     else:
-        track = track_of(movement, path, draw, film, shot.roll)
+        track = track_of(words[0], path, draw, film, shot.roll)
     n = len(i)
     return Shooting(
         rig, track, local, (movement,) * n, (scale,) * n, angles, np.where(key == 1, last, 0), draw, second,
@@ -296,8 +186,8 @@ def _keys(
     return key, on
 
 
-def _mu(movement: str, u: Array) -> Array:
-    low, high = mu_range(movement)
+def _mu(movement: str, u: Array, rig: str) -> Array:
+    low, high = mu_range(movement, rig == "cinema")
     return low + (high - low) * u
 
 
@@ -334,6 +224,15 @@ def _lens(shot: Shot, movement: str, rig: str, u: Array, mu: Array) -> Array:
     return np.asarray(bottom * (top / bottom) ** u)
 
 
+def _rise(subject: Subject, size: Size, at: NDArray[np.int64], view: Array, theta: Array) -> Array:
+    """Metres over the aim at which the size's headroom is [P], of people upright in a view that many metres
+    high; 0 for the others, whose middle stays in the middle."""
+    drop = subject.landmarks[size.upper][at] - subject.landmarks[size.lower][at]
+    stands = drop[:, 2] > FLAT * np.linalg.norm(drop, axis=1)
+    upright = stands & (np.sin(theta) > 0.85) & (subject.kind == "person")
+    return np.where(upright, (0.5 - size.top) * view / np.maximum(np.sin(theta), 0.5), 0.0)
+
+
 def _travel(
     subject: Subject,
     movement: str,
@@ -364,34 +263,3 @@ def _travel(
 def _between(kind: str, u: Array) -> Array:
     low, high = TRAVELS[kind]
     return low + (high - low) * u
-
-
-def _joined(parts: list[Shooting]) -> Shooting:
-    """Several as one."""
-
-    def cat(name: str) -> NDArray[np.float64]:
-        return np.concatenate([getattr(p, name) for p in parts])
-
-    track = CameraTrack(
-        np.concatenate([p.track.position for p in parts]),
-        np.concatenate([p.track.rotation for p in parts]),
-        np.concatenate([p.track.focal for p in parts]),
-        np.concatenate([p.track.look_at for p in parts]),
-        parts[0].track.sensor,
-    )
-    draw = Draw(*(np.concatenate([getattr(p.draw, f.name) for p in parts]) for f in fields(Draw)))
-    second = Draw(*(np.concatenate([getattr(p.second, f.name) for p in parts]) for f in fields(Draw)))
-    return Shooting(
-        parts[0].rig,
-        track,
-        cat("order").astype(np.int64),
-        tuple(w for p in parts for w in p.movements),
-        tuple(w for p in parts for w in p.scales),
-        tuple(w for p in parts for w in p.angles),
-        cat("key").astype(np.int64),
-        draw,
-        second,
-        cat("lifted"),
-        cat("relative"),
-        cat("height"),
-    )

@@ -31,7 +31,7 @@ from .state import SceneState, opening_state
 from .tasks import Errand, disc, errand, speaking
 from .types import STILL, Performance, ProposalGrid, StoryProposal
 
-__all__ = ["SceneState", "Told", "advance", "opening_state", "propose", "propose_story", "tell"]
+__all__ = ["SceneState", "Told", "advance", "film", "opening_state", "propose", "propose_story", "tell"]
 
 MOST = 4  # story proposals a line: more are ways nobody would tell apart
 _STILL = 4.0  # seconds of a shot in which nobody does anything, where the script does not say
@@ -84,7 +84,7 @@ def _motions(
     state: SceneState, errands: dict[str, Errand], filming: Filming, shot: Shot | None, most: int
 ) -> Iterator[tuple[str, int, SceneMotion]]:
     """Variant, path and motion of every way."""
-    seed = int(generator(filming.seed, shot.id if shot else "", "performance").integers(2**31))
+    seed = int(generator(filming.seed, shot.drawn_as if shot else "", "performance").integers(2**31))
     for variant, path in _ways(errands, most):
         motion = _perform(state, errands, filming.skeletons, (variant, path), filming.fps, seed, shot)
         name = next(iter(errands.values())).task.clip.variants[variant].name if errands else STILL
@@ -116,13 +116,17 @@ def propose(
 
     advised: where no camera does what the line says, find out why, and what would work
     """
-    told = tell(state, line, filming, shot=shot)
+    return film(tell(state, line, filming, shot=shot), shot, state, filming, advised)
+
+
+def film(told: Told, shot: Shot, state: SceneState, filming: Filming, advised: bool = False) -> ProposalGrid:
+    """Cameras on a line that is performed already: several shots of one line may share its performances."""
     moved = [p for p in told.end.world.objects if p.hinge is not None]
     widest = {p.id: max(p.ajar, state.world.objects[p.id].ajar) for p in moved}  # what opens hides most open
     filming = replace(filming, world=state.world.opened(widest))
     grid = propose_cameras(shot, told.proposals, filming)
     if advised and told.proposals and grid.let_in == len(grid.cameras):
-        return replace(grid, advice=advise(shot, told.proposals[0], filming))
+        return replace(grid, advice=advise(shot, told.proposals[0], filming, told.proposals[1:]))
     return grid
 
 

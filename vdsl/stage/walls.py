@@ -242,13 +242,21 @@ def _end(
     colors: tuple[Colour, Colour],
     part: int,
 ) -> Mesh:
-    """The end of a piece of wall: a reveal, an outer corner, or (shrunk, out of sight) a joint."""
+    """The end of a piece of wall: a reveal, an outer corner, or a joint.
+
+    A joint lies a little inside, so that it never is in one plane with the side of the wall it meets. It is
+    as wide as the wall and coloured between its sides, for it is seen where that one is taken away.
+    """
     corner = stretch.start - stretch.extend[0] if sign < 0 else stretch.end + stretch.extend[1]
     outer = abs(at - corner) < 1e-6
     inset = 0.004 if outer and stretch.extend[0 if sign < 0 else 1] <= 0 else 0.0
     color = TRIM if not outer else colors[0] if stretch.before is None else colors[1]
-    a, b = stretch.across - WALL_THICKNESS / 2 + inset, stretch.across + WALL_THICKNESS / 2 - inset
-    corners = [(at, a, bottom), (at, b, bottom), (at, b, top - inset), (at, a, top - inset)]
+    if outer and stretch.before is not None and stretch.after is not None:
+        red, green, blue = ((x + y) / 2 for x, y in zip(*colors, strict=True))
+        color = (red, green, blue)
+    a, b = stretch.across - WALL_THICKNESS / 2, stretch.across + WALL_THICKNESS / 2
+    at -= sign * inset
+    corners = [(at, a, bottom), (at, b, bottom), (at, b, top), (at, a, top)]
     return _quad(stretch.axis, corners, (sign, 0, 0), color, part)
 
 

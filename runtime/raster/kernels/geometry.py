@@ -56,10 +56,17 @@ def part3(a: ti.template(), i, k):
 
 @ti.kernel
 def skin(
-    palette: f4, rest: f2, rest_normal: f2, joints: i2, weights: f2, moments: ti.i32, position: f3, normal: f3
+    palette: f4,
+    rest: f2,
+    rest_normal: f2,
+    joints: i2,
+    weights: f2,
+    count: ti.i32,
+    moments: ti.i32,
+    position: f3,
+    normal: f3,
 ):
-    """Linear blend skinning of all vertices in the first ``moments`` palettes."""
-    count = rest.shape[0]
+    """Linear blend skinning of the first ``count`` vertices in the first ``moments`` palettes."""
     for i in range(moments * count):
         m = i // count
         v = i % count
@@ -83,9 +90,16 @@ def skin(
 
 @ti.kernel
 def bound(
-    faces: i2, clusters: i2, first: ti.i32, static_vertices: ti.i32, moments: ti.i32, position: f3, sphere: f3
+    faces: i2,
+    clusters: i2,
+    wanted: i1,
+    first: ti.i32,
+    static_vertices: ti.i32,
+    moments: ti.i32,
+    position: f3,
+    sphere: f3,
 ):
-    """Bounding spheres of the moving clusters (those from ``first`` on) at every moment."""
+    """Bounding spheres of the moving clusters (from ``first`` on) that are wanted, at every moment."""
     count = clusters.shape[0] - first
     for i in range(moments * count):
         m = i // count
@@ -93,7 +107,7 @@ def bound(
         low = vec3(1e30)
         high = vec3(-1e30)
         begin = clusters[first + c, 0]
-        for t in range(begin, begin + clusters[first + c, 1]):
+        for t in range(begin, begin + clusters[first + c, 1] * wanted[first + c]):
             for k in ti.static(range(3)):
                 p = item3(position, m, faces[t, k] - static_vertices)
                 low = ti.min(low, p)
@@ -192,7 +206,7 @@ def cut(cull, scale, half, p0, p1, p2):
     """
     pieces = 0
     sa, sb, sc, sd = vec3(0), vec3(0), vec3(0), vec3(0)
-    facing = p0.dot(p1.cross(p2))
+    facing = p0.dot((p1 - p0).cross(p2 - p0))  # of the corners alone, rounding would hide small ones
     if facing > 0 or (facing < 0 and not cull):
         inside = ti.cast(p0.z > NEAR, ti.i32) + ti.cast(p1.z > NEAR, ti.i32) + ti.cast(p2.z > NEAR, ti.i32)
         if inside > 0:
@@ -229,131 +243,6 @@ def cut(cull, scale, half, p0, p1, p2):
 def screen(p, scale, half):
     w = 1.0 / p.z
     return vec3(half.x + scale.x * p.x * w, half.y - scale.y * p.y * w, w)
-
-
-@ti.kernel
-def project(view: f2, moment: i1, position: f3, vertices: ti.i32, views: ti.i32, seen: f3):
-    """Screen coordinates (x, y, 1/z) of the skinned vertices in every view; 1/z is -1 behind the lens."""
-    for i in range(views * vertices):
-        n = i // vertices
-        v = i % vertices
-        d = item3(position, moment[n], v) - part3(view, n, 0)
-        p = vec3(part3(view, n, 3).dot(d), part3(view, n, 6).dot(d), part3(view, n, 9).dot(d))
-        s = vec3(0, 0, -1)
-        if p.z > NEAR:
-            s = screen(p, ti.Vector([view[n, 12], view[n, 13]]), ti.Vector([view[n, 14], view[n, 15]]))
-        for a in ti.static(range(3)):
-            seen[n, v, a] = s[a]
-
-
-@ti.kernel
-def raster_serial(
-    view: f2,
-    moment: i1,
-    hidden: i2,
-    vertices: f2,
-    position: f3,
-    seen: f3,
-    faces: i2,
-    clusters: i2,
-    sphere: f2,
-    moving_sphere: f3,
-    moving_first: ti.i32,
-    static_vertices: ti.i32,
-    vis: u64s,
-    views: ti.i32,
-    width: ti.i32,
-    height: ti.i32,
-    bands: ti.i32,
-):
-    """Fill the visibility buffers, each band of each view by one thread alone, clearing it first.
-
-    clusters [C, 4]: first triangle, count, cull, wall; those from ``moving_first`` on are skinned
-    """
-    ti.loop_config(block_dim=1)
-    for task in range(views * bands):
-        n = task // bands
-        band = task % bands
-        y_from = height * band // bands
-        y_to = height * (band + 1) // bands
-        base = n * height * width
-        for i in range(base + y_from * width, base + y_to * width):
-            vis[i] = ti.u64(0)
-        eye = part3(view, n, 0)
-        right = part3(view, n, 3)
-        up = part3(view, n, 6)
-        forward = part3(view, n, 9)
-        scale = ti.Vector([view[n, 12], view[n, 13]])
-        half = ti.Vector([view[n, 14], view[n, 15]])
-        # the pyramid of the view: slopes of its sides, and what a radius counts against them
-        side_x, side_y = half.x / scale.x, half.y / scale.y
-        grow_x, grow_y = ti.sqrt(1 + side_x * side_x), ti.sqrt(1 + side_y * side_y)
-        m = moment[n]
-        for k in range(clusters.shape[0]):
-            # the moving ones first: they are near, and hide much
-            c = k + moving_first
-            if c >= clusters.shape[0]:
-                c -= clusters.shape[0]
-            moving = c >= moving_first
-            ball = vec3(0)
-            radius = 0.0
-            shown = True
-            if moving:
-                ball = item3(moving_sphere, m, c - moving_first)
-                radius = moving_sphere[m, c - moving_first, 3]
-            else:
-                ball = row3(sphere, c)
-                radius = sphere[c, 3]
-            wall = clusters[c, 3]
-            if wall >= 0:
-                shown = hidden[n, wall] == 0
-            ball -= eye
-            z = forward.dot(ball)
-            if (
-                shown
-                and z > NEAR - radius
-                and ti.abs(right.dot(ball)) - z * side_x < radius * grow_x
-                and ti.abs(up.dot(ball)) - z * side_y < radius * grow_y
-            ):
-                cull = clusters[c, 2] != 0
-                for t in range(clusters[c, 0], clusters[c, 0] + clusters[c, 1]):
-                    i0, i1_, i2_ = faces[t, 0], faces[t, 1], faces[t, 2]
-                    sa, sb, sc, sd = vec3(0), vec3(0), vec3(0), vec3(0)
-                    pieces = 0
-                    whole = False
-                    if moving:
-                        sa = item3(seen, n, i0 - static_vertices)
-                        sb = item3(seen, n, i1_ - static_vertices)
-                        sc = item3(seen, n, i2_ - static_vertices)
-                        whole = sa.z > 0 and sb.z > 0 and sc.z > 0
-                        if whole:
-                            turn = (sb.x - sa.x) * (sc.y - sa.y) - (sc.x - sa.x) * (sb.y - sa.y)
-                            pieces = 1 if turn < 0 or (turn > 0 and not cull) else 0
-                    if not whole:
-                        p0, p1, p2 = vec3(0), vec3(0), vec3(0)
-                        if moving:
-                            p0 = item3(position, m, i0 - static_vertices)
-                            p1 = item3(position, m, i1_ - static_vertices)
-                            p2 = item3(position, m, i2_ - static_vertices)
-                        else:
-                            p0 = row3(vertices, i0)
-                            p1 = row3(vertices, i1_)
-                            p2 = row3(vertices, i2_)
-                        p0 -= eye
-                        p1 -= eye
-                        p2 -= eye
-                        pieces, sa, sb, sc, sd = cut(
-                            cull,
-                            scale,
-                            half,
-                            vec3(right.dot(p0), up.dot(p0), forward.dot(p0)),
-                            vec3(right.dot(p1), up.dot(p1), forward.dot(p1)),
-                            vec3(right.dot(p2), up.dot(p2), forward.dot(p2)),
-                        )
-                    for j in range(pieces):
-                        if j == 1:
-                            sb, sc = sc, sd
-                        fill(vis, True, base, width, y_from, y_to, 1, ti.cast(t + 1, ti.u64), sa, sb, sc)
 
 
 @ti.kernel

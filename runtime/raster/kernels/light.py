@@ -1,8 +1,9 @@
 """Light: shadow maps of the set and of every moment, and where people touch the floor.
 
 A shadow map keeps, per texel of a plane across the light, the greatest distance towards the light.
-``coarse`` keeps the greatest value in and around each block of BLOCK x BLOCK texels: most points are
-nearer to the light than that, and need no further look.
+``coarse`` keeps the greatest and the least value around each block of FINE x FINE texels, and the greatest
+around each of BLOCK x BLOCK: most points are nearer to the light than all of those, or behind them, and
+need no further look.
 """
 
 # mypy: ignore-errors
@@ -10,11 +11,12 @@ nearer to the light than that, and need no further look.
 
 import taichi as ti
 
-from .geometry import f1, f2, f3, i1, i2, to_pixel, vec3
+from .geometry import f1, f2, f3, greater, i1, i2, lesser, to_pixel, vec3
 
-BLOCK = 8  # 1 << BLOCK_BITS
-BLOCK_BITS = 3  # shifting is quicker than dividing what might be negative
+BLOCK, BLOCK_BITS = 8, 3  # shifting is quicker than dividing what might be negative
+FINE, FINE_BITS = 4, 2
 NOWHERE = -1e9
+FINEST = 0.006  # metres, no texel is smaller
 
 
 @ti.func
@@ -25,6 +27,11 @@ def across(basis: ti.template(), p):
         basis[3] * p.x + basis[4] * p.y + basis[5] * p.z,
         basis[6] * p.x + basis[7] * p.y + basis[8] * p.z,
     )
+
+
+def summary_size(size: int) -> int:
+    """Numbers in ``coarse`` for each map of size x size texels."""
+    return 2 * (size // FINE) ** 2 + (size // BLOCK) ** 2
 
 
 @ti.kernel
@@ -43,7 +50,6 @@ def fit(
 
     The corner lies on whole texels and the scale on half octaves, so that the map does not swim.
     """
-    ti.loop_config(block_dim=1)
     for m in range(moments):
         low = vec3(1e30)
         high = vec3(-1e30)
@@ -76,7 +82,6 @@ def cast(
     coarse: f1,
 ):
     """Draw the casters into each moment's map, and the coarse map of it."""
-    ti.loop_config(block_dim=1)
     for m in range(moments):
         base = m * size * size
         for i in range(size * size):
@@ -87,23 +92,49 @@ def cast(
             b = on_map(seen, m, faces[t, 1] - offset, frame)
             c = on_map(seen, m, faces[t, 2] - offset, frame)
             stamp(depth, base, size, a, b, c)
-        # the greatest of each block, then of each block and its neighbours
-        blocks = size // BLOCK
-        begin = m * blocks * blocks
-        for j in range(blocks):
-            for i in range(blocks):
-                most = NOWHERE
-                for y in range(j * BLOCK, j * BLOCK + BLOCK):
-                    for x in range(i * BLOCK, i * BLOCK + BLOCK):
-                        most = ti.max(most, depth[base + y * size + x])
-                spare[begin + j * blocks + i] = most
-        for j in range(blocks):
-            for i in range(blocks):
-                most = NOWHERE
-                for y in range(ti.max(0, j - 1), ti.min(blocks, j + 2)):
-                    for x in range(ti.max(0, i - 1), ti.min(blocks, i + 2)):
-                        most = ti.max(most, spare[begin + y * blocks + x])
-                coarse[begin + j * blocks + i] = most
+        summarise(depth, base, size, spare, coarse, m)
+
+
+@ti.func
+def summarise(depth: ti.template(), base, size, spare: ti.template(), coarse: ti.template(), m):
+    """The greatest and the least height around each fine block, and the greatest around coarse ones."""
+    blocks = size // FINE
+    begin = m * coarse_size(size)
+    low = begin + blocks * blocks
+    for j in range(blocks):
+        for i in range(blocks):
+            least, most = 1e9, NOWHERE
+            for y in range(j * FINE, j * FINE + FINE):
+                for x in range(i * FINE, i * FINE + FINE):
+                    z = depth[base + y * size + x]
+                    least, most = lesser(z, least), greater(z, most)
+            spare[begin + j * blocks + i] = most
+            spare[low + j * blocks + i] = least
+    for j in range(blocks):
+        for i in range(blocks):
+            least, most = 1e9, NOWHERE
+            for y in range(ti.max(0, j - 1), ti.min(blocks, j + 2)):
+                for x in range(ti.max(0, i - 1), ti.min(blocks, i + 2)):
+                    least = lesser(least, spare[low + y * blocks + x])
+                    most = greater(most, spare[begin + y * blocks + x])
+            coarse[begin + j * blocks + i] = most
+            coarse[low + j * blocks + i] = least
+    # a coarse block is two by two fine ones: what is around it is four by four of what is around those
+    wide = size // BLOCK
+    last = low + blocks * blocks
+    for j in range(wide):
+        for i in range(wide):
+            most = NOWHERE
+            for y in range(ti.max(0, 2 * j - 1), ti.min(blocks, 2 * j + 3)):
+                for x in range(ti.max(0, 2 * i - 1), ti.min(blocks, 2 * i + 3)):
+                    most = greater(most, coarse[begin + y * blocks + x])
+            coarse[last + j * wide + i] = most
+
+
+@ti.func
+def coarse_size(size):
+    """How many numbers :func:`summarise` keeps of a map."""
+    return 2 * (size // FINE) * (size // FINE) + (size // BLOCK) * (size // BLOCK)
 
 
 @ti.func
@@ -155,17 +186,32 @@ def stamp(depth: ti.template(), base, size, a, b, c):
 
 
 @ti.func
-def unblocked(q, m, frame: ti.template(), size, coarse: ti.template()):
-    """Whether nothing within a block of light coordinates ``q`` can be in its light."""
-    x = (q.x - frame[m, 0]) * frame[m, 2]
-    y = (q.y - frame[m, 1]) * frame[m, 2]
+def free_between(a, b, m, frame: ti.template(), size, coarse: ti.template()):
+    """Whether nothing within a block of the way between two light coordinates can be in its light."""
     out = True
-    if 0 <= x < size and 0 <= y < size:
-        blocks = size >> BLOCK_BITS
-        i, j = ti.cast(x, ti.i32) >> BLOCK_BITS, ti.cast(y, ti.i32) >> BLOCK_BITS
-        out = q.z >= coarse[m * blocks * blocks + j * blocks + i]
-    else:
-        out = x < -BLOCK or y < -BLOCK or x > size + BLOCK or y > size + BLOCK
+    if size > 1:
+        ax, ay = (a.x - frame[m, 0]) * frame[m, 2], (a.y - frame[m, 1]) * frame[m, 2]
+        bx, by = (b.x - frame[m, 0]) * frame[m, 2], (b.y - frame[m, 1]) * frame[m, 2]
+        edge = ti.cast(size, ti.f32)
+        low, high = ti.cast(-BLOCK, ti.f32), edge + BLOCK
+        beside = (ax < low and bx < low) or (ay < low and by < low)
+        beside = beside or (ax > high and bx > high) or (ay > high and by > high)
+        if not beside:
+            blocks, fine = size >> BLOCK_BITS, size >> FINE_BITS
+            begin = m * coarse_size(size) + 2 * fine * fine
+            z = lesser(a.z, b.z)
+            steps = ti.cast(greater(ti.abs(bx - ax), ti.abs(by - ay)) * (1.0 / 12.0), ti.i32) + 1
+            share = 1.0 / ti.cast(steps, ti.f32)
+            k = 0
+            while k <= steps and out:
+                part = share * ti.cast(k, ti.f32)
+                x, y = ax + (bx - ax) * part, ay + (by - ay) * part
+                if 0 <= x < edge and 0 <= y < edge:
+                    i, j = ti.cast(x, ti.i32) >> BLOCK_BITS, ti.cast(y, ti.i32) >> BLOCK_BITS
+                    out = z >= coarse[begin + j * blocks + i]
+                else:
+                    out = x < low or y < low or x > high or y > high
+                k += 1
     return out
 
 
@@ -178,8 +224,11 @@ def lit(q, m, frame: ti.template(), size, depth: ti.template(), coarse: ti.templ
     if 2 <= x < size - 4 and 2 <= y < size - 4:
         i = ti.cast(x, ti.i32)
         j = ti.cast(y, ti.i32)
-        blocks = size >> BLOCK_BITS
-        if q.z < coarse[(m * blocks + (j >> BLOCK_BITS)) * blocks + (i >> BLOCK_BITS)]:
+        blocks = size >> FINE_BITS
+        block = m * coarse_size(size) + (j >> FINE_BITS) * blocks + (i >> FINE_BITS)
+        if q.z < coarse[block + blocks * blocks]:
+            out = 0.0
+        elif q.z < coarse[block]:
             fx = x - i
             fy = y - j
             wx = spline(fx)
@@ -228,7 +277,6 @@ def touch(
     area: surface each skinned vertex stands for, square metres; floor: corner x, y, cells a metre, then the
         heights of the floors, rising
     """
-    ti.loop_config(block_dim=1)
     for m in range(moments):
         cells = rows * columns
         base = m * cells

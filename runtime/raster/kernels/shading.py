@@ -1,7 +1,6 @@
 """Shading: every pixel of a visibility buffer to a colour, and to what the ink lines are drawn from.
 
-Work in linear light, encode to sRGB at the end. ``edge`` keeps, per pixel, the surface in its high
-half and the normal (octahedral, 8 + 8 bits) in its low half; 0xFFFF0000 is the backdrop.
+Works in linear light and encodes to sRGB at the end; patterns are put on later (pattern.py).
 """
 
 # mypy: ignore-errors
@@ -12,8 +11,9 @@ from types import SimpleNamespace
 
 import taichi as ti
 
-from ..film import FILM_RANGE, FILM_SIZE
 from ..types import Style
+from .ambient import area_near, lift_of, rise_of, sheltered, toned
+from .chart import DARK, LIT, MIXED, SHADOW_SHIFT, cell_at, survey
 from .geometry import (
     bounded,
     f1,
@@ -26,156 +26,19 @@ from .geometry import (
     part3,
     row3,
     triangle,
+    u8s,
     u16s,
     u32s,
     u64s,
     vec3,
 )
-from .light import BLOCK, above_floor, across, lit, unblocked
-from .pattern import broad_pattern, glazed, grained, pattern
+from .light import across, free_between, lit
+from .paint import NOTHING, RUN, SHADE, SHEET, backdrop, developed, exposed, pack_normal, packed, spread
+from .pattern import broad_pattern, glazed
+from .sheet import fold_kernel
 
-NOTHING = 0xFFFF0000
-RUN = 16  # pixels; rows are worked through in aligned runs of them
+CLAY_DEPTH = 1.9  # how much deeper the corners are in clay
 ABRUPT = 0.05  # difference of key light over a few pixels, above which each is looked up
-SHEET = 16  # numbers kept for each side of a triangle of the set
-
-
-@ti.func
-def pack_normal(n):
-    """Octahedral encoding in 8 + 8 bits (Cigolle et al. 2014)."""
-    s = 1.0 / ti.max(ti.abs(n.x) + ti.abs(n.y) + ti.abs(n.z), 1e-12)
-    x = n.x * s
-    y = n.y * s
-    if n.z < 0:
-        ox = (1.0 - ti.abs(y)) * (1.0 if x >= 0 else -1.0)
-        y = (1.0 - ti.abs(x)) * (1.0 if y >= 0 else -1.0)
-        x = ox
-    qx = ti.cast((x * 0.5 + 0.5) * 254.0 + 0.5, ti.u32)
-    qy = ti.cast((y * 0.5 + 0.5) * 254.0 + 0.5, ti.u32)
-    return (qx << 8) | qy
-
-
-@ti.func
-def unpack_normal(bits):
-    x = ti.cast((bits >> 8) & 0xFF, ti.f32) * (2.0 / 254.0) - 1.0
-    y = ti.cast(bits & 0xFF, ti.f32) * (2.0 / 254.0) - 1.0
-    z = 1.0 - ti.abs(x) - ti.abs(y)
-    if z < 0:
-        ox = (1.0 - ti.abs(y)) * (1.0 if x >= 0 else -1.0)
-        y = (1.0 - ti.abs(x)) * (1.0 if y >= 0 else -1.0)
-        x = ox
-    return vec3(x, y, z).normalized()
-
-
-@ti.func
-def encode(light, table: ti.template()):
-    """Linear 0..1 to packed 8-bit sRGB and luma, through the table of 4096."""
-    r = ti.cast(ti.min(ti.max(light.x, 0.0), 1.0) * 4095.0 + 0.5, ti.i32)
-    g = ti.cast(ti.min(ti.max(light.y, 0.0), 1.0) * 4095.0 + 0.5, ti.i32)
-    b = ti.cast(ti.min(ti.max(light.z, 0.0), 1.0) * 4095.0 + 0.5, ti.i32)
-    r8, g8, b8 = table[r], table[g], table[b]
-    return r8 | (g8 << 8) | (b8 << 16) | (((r8 * 5 + g8 * 9 + b8 * 2) >> 4) << 24)
-
-
-@ti.func
-def exposed(light, film: ti.template()):
-    """Scene light to sRGB in 256ths of a step, halves added for rounding: red, green, blue."""
-    limit = ti.static(FILM_RANGE)
-    scale = ti.static((FILM_SIZE - 1) / FILM_RANGE)
-    return ti.Vector(
-        [
-            ti.cast(film[ti.cast(bounded(light.x, 0.0, limit) * scale + 0.5, ti.i32)], ti.i32),
-            ti.cast(film[ti.cast(bounded(light.y, 0.0, limit) * scale + 0.5, ti.i32)], ti.i32),
-            ti.cast(film[ti.cast(bounded(light.z, 0.0, limit) * scale + 0.5, ti.i32)], ti.i32),
-        ]
-    )
-
-
-@ti.func
-def packed(paint):
-    """Colours of :func:`exposed` to packed 8-bit sRGB and luma."""
-    c = paint >> 8
-    luma = (c.x * 5 + c.y * 9 + c.z * 2) >> 4
-    return ti.cast(c.x | (c.y << 8) | (c.z << 16) | (luma << 24), ti.u32)
-
-
-@ti.func
-def developed(light, film: ti.template()):
-    """Scene light to packed 8-bit sRGB and luma, through the film's table."""
-    return packed(exposed(light, film))
-
-
-@ti.func
-def spread(begin, end, steps, mark, at, count, picture: ti.template(), edge: ti.template()):
-    """Fill ``count`` pixels with colours evenly between two (of :func:`exposed`), ``steps`` pixels apart.
-
-    Two colours go into one number, 8.8 bits each, so that one addition moves both.
-    """
-    luma = (begin.x * 5 + begin.y * 9 + begin.z * 2) >> 4
-    outer = ti.cast(begin.x | (begin.z << 16), ti.u32)
-    inner = ti.cast(begin.y | (luma << 16), ti.u32)
-    outer_step = 0
-    inner_step = 0
-    if steps > 1:
-        luma_end = (end.x * 5 + end.y * 9 + end.z * 2) >> 4
-        share = 1.0 / ti.cast(steps, ti.f32)
-        outer_step = part_of(end.x - begin.x, share) + (part_of(end.z - begin.z, share) << 16)
-        inner_step = part_of(end.y - begin.y, share) + (part_of(luma_end - luma, share) << 16)
-    for i in range(at, at + count):
-        picture[i] = ((outer >> 8) & ti.u32(0x00FF00FF)) | (inner & ti.u32(0xFF00FF00))
-        edge[i] = mark
-        outer += ti.cast(outer_step, ti.u32)
-        inner += ti.cast(inner_step, ti.u32)
-
-
-@ti.func
-def part_of(whole, share):
-    return ti.cast(ti.cast(whole, ti.f32) * share, ti.i32)
-
-
-@ti.func
-def soft_step(x, at, steepness):
-    t = bounded((x - at) * steepness + 0.5, 0.0, 1.0)
-    return t * t * (3.0 - 2.0 * t)
-
-
-@ti.func
-def area_near(p, low, inverse, nx, ny, nz, values: ti.template()):
-    """Trilinear sample of the occlusion volume: the light kept off, 0 outside."""
-    x, y, z = (p.x - low.x) * inverse, (p.y - low.y) * inverse, (p.z - low.z) * inverse
-    out = 0.0
-    if 0 <= x < nx - 1 and 0 <= y < ny - 1 and 0 <= z < nz - 1:
-        i, j, k = ti.cast(x, ti.i32), ti.cast(y, ti.i32), ti.cast(z, ti.i32)
-        x -= i
-        y -= j
-        z -= k
-        at = (i * ny + j) * nz + k
-        a = values[at] + (values[at + 1] - values[at]) * z
-        b = values[at + nz] + (values[at + nz + 1] - values[at + nz]) * z
-        at += ny * nz
-        c = values[at] + (values[at + 1] - values[at]) * z
-        d = values[at + nz] + (values[at + nz + 1] - values[at + nz]) * z
-        a += (b - a) * y
-        c += (d - c) * y
-        out = a + (c - a) * x
-    return out
-
-
-@ti.func
-def standing_near(p, m, floor: ti.template(), columns, rows, ground: ti.template()):
-    """Bilinear sample of what stands on the floor."""
-    x = (p.x - floor[0]) * floor[2] - 0.5
-    y = (p.y - floor[1]) * floor[2] - 0.5
-    out = 0.0
-    if 0 <= x < columns - 1 and 0 <= y < rows - 1:
-        i, j = ti.cast(x, ti.i32), ti.cast(y, ti.i32)
-        x -= i
-        y -= j
-        at = m * rows * columns + j * columns + i
-        a = ground[at] + (ground[at + 1] - ground[at]) * x
-        b = ground[at + columns] + (ground[at + columns + 1] - ground[at + columns]) * x
-        out = a + (b - a) * y
-    return out
 
 
 @lru_cache(maxsize=8)
@@ -184,59 +47,7 @@ def shading_kernels(style: Style) -> SimpleNamespace:
     tones = style.tones
     shadows = style.shadows
     occlusion = style.occlusion
-
-    @ti.func
-    def toned(x):
-        """Light 0..1 in soft steps."""
-        out = ti.max(x, 0.0)
-        if ti.static(tones == 2):
-            out = soft_step(x, 0.22, 12.5)
-        elif ti.static(tones >= 3):
-            out = 0.0
-            for k in ti.static(range(tones - 1)):
-                out += soft_step(x, 0.10 + 0.42 * k / (tones - 2), ti.static(1.0 / (0.06 + 0.05 * k)))
-            out *= ti.static(1.0 / (tones - 1))
-        return out
-
-    @ti.kernel
-    def fold(
-        vertices: f2,
-        normals: f2,
-        faces: i2,
-        color: f2,
-        info: i2,
-        light: f1,
-        count: ti.i32,
-        sheet: f1,
-    ):
-        """What shading needs of the first ``count`` triangles (the set), seen from the front and from behind.
-
-        sheet, SHEET numbers a triangle and side: normal 3, light from the key, colour under the ambient
-        light 3, mark of the edge buffer (bits), colour under the full key 3, material | flags (bits),
-        plane 4: unit normal, and its offset
-        """
-        for i in range(2 * count):
-            t = i // 2
-            p = row3(vertices, faces[t, 0])
-            cross = (row3(vertices, faces[t, 1]) - p).cross(row3(vertices, faces[t, 2]) - p)
-            plane = cross / ti.max(cross.norm(), 1e-20)
-            n = row3(normals, faces[t, 0]) * (1.0 - 2.0 * (i % 2))
-            base = row3(color, t)
-            sky = vec3(light[6], light[7], light[8])
-            under = vec3(light[9], light[10], light[11])
-            ambient = base * (under + (sky - under) * (n.z * 0.5 + 0.5))
-            direct = base * vec3(light[3], light[4], light[5])
-            mark = (ti.cast(info[t, 0], ti.u32) << 16) | pack_normal(n)
-            at = i * SHEET
-            for a in ti.static(range(3)):
-                sheet[at + a] = n[a]
-                sheet[at + 4 + a] = ambient[a]
-                sheet[at + 8 + a] = direct[a]
-                sheet[at + 12 + a] = plane[a]
-            sheet[at + 3] = toned(n.dot(vec3(light[0], light[1], light[2])))
-            sheet[at + 7] = ti.bit_cast(mark, ti.f32)
-            sheet[at + 11] = ti.bit_cast(info[t, 1], ti.f32)
-            sheet[at + 15] = plane.dot(p)
+    deep = CLAY_DEPTH if style.clay else 1.0
 
     @ti.kernel
     def shade_rows(
@@ -250,6 +61,10 @@ def shading_kernels(style: Style) -> SimpleNamespace:
         color: f2,
         info: i2,
         sheet: f1,
+        plot: f1,
+        begin: i1,
+        side: i1,
+        chart: u8s,
         static_faces: ti.i32,
         static_vertices: ti.i32,
         light: f1,
@@ -272,10 +87,12 @@ def shading_kernels(style: Style) -> SimpleNamespace:
         rows: ti.i32,
         ground: f1,
         film: u16s,
+        lattice: f1,
         vis: u64s,
         picture: u32s,
         edge: u32s,
         solid: i1,
+        level: i1,
         views: ti.i32,
         width: ti.i32,
         height: ti.i32,
@@ -283,7 +100,7 @@ def shading_kernels(style: Style) -> SimpleNamespace:
         """light: sun 3, sun colour 3, sky 3, ground 3, horizon 3, zenith 3 (scene light)
 
         solid: the triangle + 1 of the set that fills each RUN of pixels alone, 0 for none,
-        -1 for the backdrop
+        -1 for the backdrop; level: of each RUN, below SHADE what is there already
         """
         for line in range(views * height):
             n = line // height
@@ -308,24 +125,25 @@ def shading_kernels(style: Style) -> SimpleNamespace:
             # the row in light coordinates, and how far points are lifted off their surface for each map
             eye_l, first_l, step_l = across(basis, eye), across(basis, first), across(basis, step)
             texel, set_texel = 1.0 / frame[m, 2], 1.0 / set_frame[0, 2]
-            lift, set_lift = 0.01 + 1.8 * texel, 0.01 + 1.8 * set_texel
-            rise, set_rise = 0.004 + 0.4 * texel, 0.004 + 0.4 * set_texel
-            open_reach = 1.5 * BLOCK * ti.min(texel, set_texel)
+            lift, set_lift = lift_of(texel), lift_of(set_texel)
+            rise, set_rise = rise_of(texel), rise_of(set_texel)
             last = -1
             p0, g1, g2 = vec3(0), vec3(0), vec3(0)
             n0, n1, n2 = vec3(0), vec3(0), vec3(0)
             n_l = vec3(0)
             base, ambient, direct = vec3(0), vec3(0), vec3(0)
             facing = 0.0
+            shadow = MIXED
             mark = ti.u32(NOTHING)
             flat = True
             material = 0
-            slant = 0.0
             # light along a stretch of one triangle of the set: its ends are looked up, the rest lies between
             shade, shade_end = 1.0, 1.0
             tone, tone_end = 1.0, 1.0
             haze, haze_end = 0.0, 0.0
-            free, free_end = False, False
+            q_end = vec3(0)
+            cell_end = ti.Vector([0, 0])
+            kind, kind_end = MIXED, MIXED
             end_at = vec3(0)
             joined = False
             painted = False
@@ -335,6 +153,12 @@ def shading_kernels(style: Style) -> SimpleNamespace:
             whole = False
             x = 0
             while x < width:
+                if x % RUN == 0:
+                    while x < width and level[line * ((width + RUN - 1) // RUN) + x // RUN] < SHADE:
+                        x += RUN
+                        joined = False
+                    if x >= width:
+                        break
                 at = line * width + x
                 t = triangle(vis, at)
                 if x % RUN == 0:
@@ -356,9 +180,9 @@ def shading_kernels(style: Style) -> SimpleNamespace:
                 if t < 0:
                     last = -1
                     joined = False
-                    begin = backdrop(first + step * ti.cast(x, ti.f32), horizon, zenith, film)
-                    end = backdrop(first + step * ti.cast(stop - 1, ti.f32), horizon, zenith, film)
-                    spread(begin, end, stop - 1 - x, ti.u32(NOTHING), at, stop - x, picture, edge)
+                    near_end = backdrop(first + step * ti.cast(x, ti.f32), horizon, zenith, film)
+                    far_end = backdrop(first + step * ti.cast(stop - 1, ti.f32), horizon, zenith, film)
+                    spread(near_end, far_end, stop - 1 - x, ti.u32(NOTHING), at, stop - x, picture, edge)
                 elif t >= static_faces:
                     joined = False
                     if t != last:
@@ -382,16 +206,23 @@ def shading_kernels(style: Style) -> SimpleNamespace:
                         p0 -= eye
                         mark = ti.cast(info[t, 0], ti.u32) << 16
                         material = info[t, 1] & 255
-                    # every few pixels are shaded, the rest lie between
-                    xx = x
-                    before = x
+                    # every few pixels are shaded, the rest lie between; of a few pixels, the middle one
+                    short = stop - x <= fine
+                    gap = spaced(stop - x, fine)
+                    xx = stop - 1 if short else x
+                    before = xx
                     paint = ti.Vector([0, 0, 0])
                     key_before = 0.0
                     more = True
                     while more:
                         i = at + xx - x
-                        ray = first + step * ti.cast(xx, ti.f32)
-                        depth = 1.0 / nearness(vis, i)
+                        place = ti.cast(xx, ti.f32)
+                        near = nearness(vis, i)
+                        if short:
+                            place = 0.5 * ti.cast(x + xx, ti.f32)
+                            near = 0.5 * (near + nearness(vis, at))
+                        ray = first + step * place
+                        depth = 1.0 / near
                         d = ray * depth - p0
                         b1 = bounded(d.dot(g1), 0.0, 1.0)
                         b2 = bounded(d.dot(g2), 0.0, 1.0)
@@ -404,10 +235,10 @@ def shading_kernels(style: Style) -> SimpleNamespace:
                         elif material == 8:
                             out = base * 2.0 + 0.2
                         else:
-                            key_light = toned(nn.dot(sun))
+                            key_light = toned(nn.dot(sun), tones)
                             if ti.static(shadows):  # noqa: SIM102
                                 if key_light > 0:
-                                    q = eye_l + (first_l + step_l * ti.cast(xx, ti.f32)) * depth
+                                    q = eye_l + (first_l + step_l * place) * depth
                                     nn_l = across(basis, nn)
                                     key_light *= lit(
                                         q + nn_l * lift + vec3(0, 0, rise), m, frame, size, depth_map, coarse
@@ -422,8 +253,13 @@ def shading_kernels(style: Style) -> SimpleNamespace:
                                             set_coarse,
                                         )
                             if key_light < 0.42:
-                                key_light = ti.max(key_light, 0.42 * toned(nn.dot(fill)))
+                                key_light = ti.max(key_light, 0.42 * toned(nn.dot(fill), tones))
                             ambient = under + (sky - under) * (nn.z * 0.5 + 0.5)
+                            if ti.static(style.clay):
+                                around = eye + ray * depth + nn * 0.24
+                                ambient *= 1.0 - deep * area_near(
+                                    around, corner, volume_low[3], nx, ny, nz, values
+                                )
                             out = base * (ambient + sun_color * (0.08 + 0.92 * key_light))
                         out += (horizon - out) * (bounded((depth - 2.0) * 0.04, 0.0, 1.0) * 0.15)
                         if xx > before + 1 and ti.abs(key_light - key_before) > ABRUPT:
@@ -445,10 +281,14 @@ def shading_kernels(style: Style) -> SimpleNamespace:
                             paint = there
                             key_before = key_light
                             before = xx
-                            more = xx < stop - 1
-                            xx = ti.min(xx + fine, stop - 1)
-                    picture[at + before - x] = packed(paint)
-                    edge[at + before - x] = mark
+                            more = xx < stop - 1 and not short
+                            xx = ti.min(xx + gap, stop - 1)
+                    if short:
+                        before = x
+                    c = packed(paint)
+                    for i in range(at + before - x, at + stop - x):
+                        picture[i] = c
+                        edge[i] = mark
                 else:
                     if t != last:
                         last = t
@@ -463,9 +303,12 @@ def shading_kernels(style: Style) -> SimpleNamespace:
                         n0 = vec3(sheet[row], sheet[row + 1], sheet[row + 2])
                         ambient = vec3(sheet[row + 4], sheet[row + 5], sheet[row + 6])
                         direct = vec3(sheet[row + 8], sheet[row + 9], sheet[row + 10])
-                        kind = ti.bit_cast(sheet[row + 11], ti.i32)
-                        flat = (kind >> 8) & 1
-                        material = kind & 255
+                        flags = ti.bit_cast(sheet[row + 11], ti.i32)
+                        flat = (flags >> 8) & 1
+                        shadow = flags >> SHADOW_SHIFT
+                        if shadow == DARK:
+                            facing = 0.0
+                        material = flags & 255
                         n_l = across(basis, n0)
                         if not flat:
                             base = row3(color, t)
@@ -484,11 +327,6 @@ def shading_kernels(style: Style) -> SimpleNamespace:
                             g1 = q2.cross(cross) * inverse
                             g2 = cross.cross(q1) * inverse
                             p0 -= eye
-                        if grained(material):
-                            # a pixel's width on the surface at 1 m, tamed at grazing angles
-                            ray = first + step * ti.cast(x, ti.f32)
-                            cosine = ti.abs(plane.dot(ray)) / ray.norm()
-                            slant = 1.0 / (ti.max(ti.sqrt(cosine), 0.15) * view[n, 13])
                     if material == 7 or material == 8:
                         joined = False
                         base = row3(color, t)
@@ -507,14 +345,16 @@ def shading_kernels(style: Style) -> SimpleNamespace:
                         # triangle goes on, the end is the first pixel of the next stretch
                         goes_on = stop < width and triangle(vis, at + stop - x) == t
                         end = stop if goes_on else stop - 1
-                        if end == x + 1 and not goes_on:
-                            end = x  # two pixels have one light
+                        middle, lone = x, False
+                        if end - x < fine and not goes_on and not (x > 0 and triangle(vis, at - 1) == t):
+                            middle, end, lone = (x + end) // 2, x, True  # a few pixels have one light
                         begin_at = end_at
                         if joined:
-                            shade, tone, haze, free = shade_end, tone_end, haze_end, free_end
+                            shade, tone, haze, kind = shade_end, tone_end, haze_end, kind_end
+                        q_begin, cell = q_end, cell_end
                         for k in range(2):
                             if (k == 0 and not joined) or (k == 1 and end > x):
-                                xx = x if k == 0 else end
+                                xx = middle if k == 0 else end
                                 depth = 1.0 / nearness(vis, at + xx - x)
                                 end_at = eye + (first + step * ti.cast(xx, ti.f32)) * depth
                                 if ti.static(occlusion):
@@ -532,41 +372,60 @@ def shading_kernels(style: Style) -> SimpleNamespace:
                                         columns,
                                         rows,
                                         ground,
+                                        deep,
                                     )
-                                tone_end = broad_pattern(material, end_at, n0)
-                                if ti.static(shadows):
-                                    q = eye_l + (first_l + step_l * ti.cast(xx, ti.f32)) * depth
-                                    free_end = unblocked(
-                                        q + n_l * lift + vec3(0, 0, rise), m, frame, size, coarse
-                                    ) and unblocked(
-                                        q + n_l * set_lift + vec3(0, 0, set_rise),
-                                        0,
-                                        set_frame,
-                                        set_size,
-                                        set_coarse,
-                                    )
+                                tone_end = broad_pattern(material, end_at, n0, lattice)
+                                if ti.static(shadows):  # noqa: SIM102
+                                    if facing > 0:
+                                        q_end = eye_l + (first_l + step_l * ti.cast(xx, ti.f32)) * depth
+                                        kind_end = shadow
+                                        if shadow == MIXED and flat:
+                                            cell_end = cell_at(t, end_at, plot, side[t])
+                                            kind_end = chart[begin[t] + cell_end[1] * side[t] + cell_end[0]]
                                 haze_end = bounded((depth - 2.0) * 0.0144, 0.0, 0.36)
                                 if k == 0:
                                     begin_at = end_at
-                                    shade, tone, haze, free = shade_end, tone_end, haze_end, free_end
+                                    q_begin, cell = q_end, cell_end
+                                    shade, tone, haze, kind = shade_end, tone_end, haze_end, kind_end
                         clear = True
-                        if ti.static(shadows):
-                            clear = facing == 0 or (
-                                free and free_end and (end_at - begin_at).norm() < open_reach
-                            )
-                        if flat and clear and not grained(material):
-                            begin = paint_end
+                        key = facing
+                        if ti.static(shadows):  # noqa: SIM102
+                            if facing > 0:
+                                # one kind of cell all the way?
+                                between = kind
+                                if kind != kind_end:
+                                    between = MIXED
+                                elif shadow == MIXED and kind != MIXED:
+                                    away = ti.max(
+                                        ti.abs(cell_end[0] - cell[0]), ti.abs(cell_end[1] - cell[1])
+                                    )
+                                    if away > 16:
+                                        between = MIXED
+                                    for k in range(1, ti.min(away, 16)):
+                                        part = ti.cast(k, ti.f32) / ti.cast(away, ti.f32)
+                                        here = cell_at(
+                                            t, begin_at + (end_at - begin_at) * part, plot, side[t]
+                                        )
+                                        if chart[begin[t] + here[1] * side[t] + here[0]] != kind:
+                                            between = MIXED
+                                if between == DARK:
+                                    key = 0.0
+                                elif between == MIXED:
+                                    clear = False
+                                else:
+                                    off = n_l * lift + vec3(0, 0, rise)
+                                    clear = free_between(q_begin + off, q_end + off, m, frame, size, coarse)
+                        if flat and clear:
+                            start = paint_end
                             if not (joined and painted):
-                                begin = exposed(
-                                    quiet(ambient, direct, facing, shade, tone, haze, horizon), film
-                                )
-                            paint_end = begin
+                                start = exposed(quiet(ambient, direct, key, shade, tone, haze, horizon), film)
+                            paint_end = start
                             if end > x:
                                 paint_end = exposed(
-                                    quiet(ambient, direct, facing, shade_end, tone_end, haze_end, horizon),
+                                    quiet(ambient, direct, key, shade_end, tone_end, haze_end, horizon),
                                     film,
                                 )
-                            spread(begin, paint_end, end - x, mark, at, stop - x, picture, edge)
+                            spread(start, paint_end, end - x, mark, at, stop - x, picture, edge)
                             painted = True
                         else:
                             painted = False
@@ -574,9 +433,10 @@ def shading_kernels(style: Style) -> SimpleNamespace:
                             step_shade = (shade_end - shade) * share
                             step_tone = (tone_end - tone) * share
                             step_haze = (haze_end - haze) * share
-                            rough = grained(material)
-                            xx = x
-                            before = x
+                            xx = middle
+                            before = middle
+                            same = x
+                            gap = spaced(stop - x, fine)
                             paint = ti.Vector([0, 0, 0])
                             key_before = 0.0
                             more = True
@@ -593,7 +453,7 @@ def shading_kernels(style: Style) -> SimpleNamespace:
                                     b2 = bounded(d.dot(g2), 0.0, 1.0)
                                     nn = n0 + n1 * b1 + n2 * b2
                                     nn *= 1.0 / ti.sqrt(ti.max(nn.norm_sqr(), 1e-12))
-                                    key_light = toned(nn.dot(sun))
+                                    key_light = toned(nn.dot(sun), tones) if shadow != DARK else 0.0
                                     ambient = base * (under + (sky - under) * (nn.z * 0.5 + 0.5))
                                     if ti.static(shadows):
                                         nn_l = across(basis, nn)
@@ -608,7 +468,7 @@ def shading_kernels(style: Style) -> SimpleNamespace:
                                             depth_map,
                                             coarse,
                                         )
-                                        if key_light > 0:
+                                        if key_light > 0 and shadow != LIT:
                                             key_light *= lit(
                                                 q + nn_l * set_lift + vec3(0, 0, set_rise),
                                                 0,
@@ -617,36 +477,33 @@ def shading_kernels(style: Style) -> SimpleNamespace:
                                                 set_depth,
                                                 set_coarse,
                                             )
-                                if xx > before + 1 and ti.abs(key_light - key_before) > ABRUPT:
-                                    # the edge of a shadow: pixel by pixel
-                                    xx = before + 1
+                                if flat and key_light == key_before and x < xx < stop - 1 and not lone:
+                                    same = xx
+                                    xx = ti.min(xx + gap, stop - 1)
                                 else:
-                                    if rough:
-                                        # the pixels after the last one looked up, this one included
-                                        key_step = 0.0
-                                        begin = xx
-                                        if xx > before:
-                                            begin = before + 1
-                                            key_step = (key_light - key_before) / ti.cast(xx - before, ti.f32)
-                                        for j in range(begin, xx + 1):
-                                            along = first + step * ti.cast(j, ti.f32)
-                                            z = 1.0 / ti.bit_cast(
-                                                ti.cast(vis[at + j - x] >> 32, ti.u32), ti.f32
-                                            )
-                                            strong = tone * pattern(material, eye + along * z, nn, z * slant)
-                                            out = quiet(
+                                    if same > before:
+                                        along = ti.cast(same - x, ti.f32)
+                                        there = exposed(
+                                            quiet(
                                                 ambient,
                                                 direct,
-                                                key_light - key_step * ti.cast(xx - j, ti.f32),
-                                                shade,
-                                                strong,
-                                                haze,
+                                                key_before,
+                                                shade + step_shade * along,
+                                                tone + step_tone * along,
+                                                haze + step_haze * along,
                                                 horizon,
-                                            )
-                                            shade += step_shade
-                                            haze += step_haze
-                                            picture[at + j - x] = developed(out, film)
-                                            edge[at + j - x] = mark
+                                            ),
+                                            film,
+                                        )
+                                        steps = same - before
+                                        spread(
+                                            paint, there, steps, mark, at + before - x, steps, picture, edge
+                                        )
+                                        paint = there
+                                        before = same
+                                    if xx > before + 1 and ti.abs(key_light - key_before) > ABRUPT:
+                                        # the edge of a shadow: pixel by pixel
+                                        xx = before + 1
                                     else:
                                         along = ti.cast(xx - x, ti.f32)
                                         there = exposed(
@@ -662,28 +519,36 @@ def shading_kernels(style: Style) -> SimpleNamespace:
                                             film,
                                         )
                                         if xx > before:
+                                            steps = xx - before
                                             spread(
                                                 paint,
                                                 there,
-                                                xx - before,
+                                                steps,
                                                 mark,
                                                 at + before - x,
-                                                xx - before,
+                                                steps,
                                                 picture,
                                                 edge,
                                             )
                                         paint = there
-                                    if not flat:
-                                        mark = (mark & ti.u32(0xFFFF0000)) | pack_normal(nn)
-                                    key_before = key_light
-                                    before = xx
-                                    more = xx < stop - 1
-                                    xx = ti.min(xx + fine, stop - 1)
-                            if not rough:
-                                picture[at + before - x] = packed(paint)
-                                edge[at + before - x] = mark
+                                        if not flat:
+                                            mark = (mark & ti.u32(0xFFFF0000)) | pack_normal(nn)
+                                        key_before = key_light
+                                        before = xx
+                                        more = xx < stop - 1 and not lone
+                                        xx = ti.min(xx + gap, stop - 1)
+                            c = packed(paint)
+                            for i in range(at if lone else at + before - x, at + stop - x):
+                                picture[i] = c
+                                edge[i] = mark
                         joined = goes_on
                 x = stop
+
+    @ti.func
+    def spaced(count, most):
+        """How far apart the pixels are that are looked up of ``count``, about ``most``, evenly."""
+        steps = ti.max((count - 1) // most, 1)
+        return (count - 1 + steps - 1) // steps
 
     @ti.func
     def quiet(ambient, direct, key_light, shade, tone, haze, horizon):
@@ -691,31 +556,4 @@ def shading_kernels(style: Style) -> SimpleNamespace:
         out = (ambient * shade + direct * (0.3 + 0.7 * key_light * (0.7 + 0.3 * shade))) * tone
         return out + (horizon - out) * haze
 
-    @ti.func
-    def backdrop(ray, horizon, zenith, film: ti.template()):
-        up = ray.z / ray.norm()
-        return exposed(horizon + (zenith - horizon) * ti.min(ti.max(up * 1.6, 0.0), 1.0), film)
-
-    @ti.func
-    def sheltered(
-        where,
-        nn,
-        m,
-        corner,
-        inverse,
-        nx,
-        ny,
-        nz,
-        values: ti.template(),
-        floor: ti.template(),
-        columns,
-        rows,
-        ground: ti.template(),
-    ):
-        """Share of the ambient light that reaches a point of the set."""
-        out = 1.0 - area_near(where + nn * 0.24, corner, inverse, nx, ny, nz, values)
-        if nn.z > 0.7 and above_floor(where.z, floor) < 0.2:
-            out *= 1.0 - 0.5 * (1.0 - ti.exp(-1.6 * standing_near(where, m, floor, columns, rows, ground)))
-        return out
-
-    return SimpleNamespace(rows=shade_rows, fold=fold, RUN=RUN, SHEET=SHEET)
+    return SimpleNamespace(rows=shade_rows, fold=fold_kernel(style), survey=survey, RUN=RUN, SHEET=SHEET)

@@ -1,0 +1,183 @@
+"""Levels of detailed moving things: coarser for views in which they are small, a finer one for close-ups.
+
+Assumes meshes of closed shells, as bodies are. Guarantees: a coarser level keeps to the vertices of the mesh,
+so that skinning, normals and weights are shared; its faces take part, colour and material from the nearest
+face of the same shell. What the finer one adds to the vertices comes after all others, and is skinned only
+where it is seen. Which level is drawn depends on a view and its moment alone, so that a batch gives what its
+views give one by one; a change of level moves outlines by less than a pixel.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import fast_simplification
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import coo_matrix
+from scipy.sparse.csgraph import connected_components
+from scipy.spatial import cKDTree
+
+from ..mesh import Mesh
+from .finer import Skin, finer
+from .types import LOOSE, RenderScene
+
+#: Share of the faces kept by each coarser level, and the pixels a metre below which it is drawn.
+LEVELS = ((0.5, 300.0), (0.25, 100.0))
+FINER = 700.0  # pixels a metre from which on the finer level is drawn
+FINEST, OWN = 0, 1  # the finer level, and the mesh as it is; coarser ones follow
+COUNT = OWN + 1 + len(LEVELS)
+SHELL = 400  # faces; shells of fewer keep them
+DETAILED = 2000  # faces; what has fewer is drawn as it is
+REACH = 0.9  # metres; a body reaches no farther from its middle
+
+
+@dataclass(frozen=True, eq=False)
+class Levels:
+    """Levels of B bodies in the faces of a scene.
+
+    scene: with the faces of the other levels after its own; source: int32 [F'], the face that each of its
+    skinned faces comes from; body, level: int32 [F'] of its skinned faces, the body (-1: of none, drawn as it
+    is) and level, :data:`FINEST` first; middle: float64 [B, P, 4], what each palette entry adds to the middle
+    of a body; person: int32 [B], its number among the people who may be left out, -1 for none; vertices: how
+    many skinned vertices all levels but the finest have
+    """
+
+    scene: RenderScene
+    body: NDArray[np.int32]
+    level: NDArray[np.int32]
+    source: NDArray[np.int32]
+    middle: NDArray[np.float64]
+    person: NDArray[np.int32]
+    vertices: int
+
+    def chosen(
+        self,
+        palettes: NDArray[np.float32],
+        moment: NDArray[np.int32],
+        view: NDArray[np.float32],
+    ) -> NDArray[np.int32]:
+        """The level of each body in each view, int32 [N, B]; ``view`` as ``pack_views`` gives it."""
+        if not len(self.middle):
+            return np.zeros((len(view), 0), np.int32)
+        count = self.middle.shape[1]
+        middle = np.einsum("mpij,bpj->mbi", palettes[:, :count].astype(np.float64), self.middle)
+        away = np.linalg.norm(middle[moment] - view[:, None, :3], axis=-1) - REACH
+        scale = np.maximum(view[:, 12], view[:, 13])[:, None] / np.maximum(away, 1e-3)
+        limits = np.array([FINER, *(limit for _, limit in LEVELS)])
+        return (scale[..., None] < limits).sum(axis=-1).astype(np.int32)
+
+
+def with_levels(scene: RenderScene) -> Levels:
+    """The scene with finer and coarser levels of whatever moves and is detailed."""
+    mesh, ids = scene.skinned, scene.skinned_object
+    fitting = np.full(len(ids), LOOSE, np.int32) if scene.fitting is None else scene.fitting
+    names, sizes = np.unique(ids, return_counts=True)
+    loose = np.isin(names, ids[fitting <= LOOSE])
+    chosen = names[(sizes >= DETAILED) & loose]
+    body = np.full(len(ids), -1, np.int32)
+    faces, source, level = (
+        [mesh.faces.astype(np.int64)],
+        [np.arange(len(ids))],
+        [np.full(len(ids), OWN, np.int32)],
+    )
+    skin = Skin(mesh.vertices, mesh.normals, scene.joints, scene.weights)
+    palette = int(scene.joints.max(initial=-1)) + 1
+    middle = np.zeros((len(chosen), palette, 4))
+    for k, name in enumerate(chosen):
+        own = np.flatnonzero(ids == name)
+        body[own] = k
+        middle[k] = _middle(scene, np.unique(mesh.faces[own]), palette)
+        for step, (share, _) in enumerate(LEVELS):
+            coarse, nearest = _coarser(mesh, own, share)
+            faces.append(coarse)
+            source.append(nearest)
+            level.append(np.full(len(coarse), OWN + 1 + step, np.int32))
+        skin, fine, of = finer(skin, mesh.faces[own].astype(np.int64))
+        faces.append(fine)
+        source.append(own[of])
+        level.append(np.full(len(fine), FINEST, np.int32))
+    source_of = np.concatenate(source)
+    person = np.array([LOOSE - 1 - int(fitting[ids == name].min()) for name in chosen], np.int32)
+    wider = Mesh(
+        skin.place,
+        np.concatenate(faces).astype(np.int32),
+        skin.normal,
+        mesh.colors[source_of],
+        mesh.parts[source_of],
+        mesh.materials[source_of],
+    )
+    wider_scene = replace(
+        scene,
+        skinned=wider,
+        skinned_object=ids[source_of],
+        fitting=fitting[source_of],
+        joints=skin.joints,
+        weights=skin.weights,
+    )
+    return Levels(
+        wider_scene,
+        body[source_of],
+        np.concatenate(level),
+        source_of.astype(np.int32),
+        middle,
+        person,
+        len(mesh.vertices),
+    )
+
+
+def _middle(scene: RenderScene, used: NDArray[np.integer], palette: int) -> NDArray[np.float64]:
+    """Rows [P, 4] whose products with the palette's matrices add up to the mean of some vertices."""
+    points = np.concatenate([scene.skinned.vertices[used], np.ones((len(used), 1))], axis=1) / len(used)
+    out = np.zeros((palette, 4))
+    for k in range(4):
+        np.add.at(out, scene.joints[used, k], points * scene.weights[used, k, None])
+    return out
+
+
+def _coarser(mesh: Mesh, own: NDArray[np.int64], share: float) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """A share of some faces, [F, 3] of the mesh's own vertices, and the original face nearest to each, [F].
+
+    Shell by shell, so that neither skin nor cloth takes after the other; small shells stay as they are.
+    """
+    corners = mesh.faces[own]
+    # sharp edges are split vertices: weld them, or they would come apart
+    places, local = np.unique(mesh.vertices[corners.reshape(-1)], axis=0, return_inverse=True)
+    local = local.reshape(-1, 3)
+    links = coo_matrix(
+        (np.ones(2 * len(local)), (local[:, :2].reshape(-1), local[:, 1:].reshape(-1))),
+        shape=(len(places),) * 2,
+    )
+    _, shell = connected_components(links, directed=False)
+    shell = shell[local[:, 0]]
+    out, nearest = [], []
+    for name in np.unique(shell):
+        here = np.flatnonzero(shell == name)
+        if len(here) < SHELL:
+            out.append(corners[here].astype(np.int64))
+            nearest.append(own[here])
+            continue
+        used, inside = np.unique(local[here].reshape(-1), return_inverse=True)
+        points, faces = fast_simplification.simplify(
+            places[used], inside.reshape(-1, 3).astype(np.int32), target_reduction=1.0 - share
+        )
+        found, source = _taken_after(mesh, own[here], points[faces].astype(np.float64))
+        out.append(found)
+        nearest.append(source)
+    return np.concatenate(out), np.concatenate(nearest)
+
+
+def _taken_after(
+    mesh: Mesh, own: NDArray[np.int64], triangles: NDArray[np.float64]
+) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """New triangles [F, 3, 3] by the vertices nearest to their corners, and the faces nearest to them."""
+    corners, parts = mesh.faces[own], mesh.parts[own]
+    _, nearest = cKDTree(mesh.vertices[corners].mean(axis=1)).query(triangles.mean(axis=1))
+    out = np.zeros((len(triangles), 3), np.int64)
+    for part in np.unique(parts[nearest]):
+        here = parts[nearest] == part
+        vertices = np.unique(corners[parts == part])
+        _, found = cKDTree(mesh.vertices[vertices]).query(triangles[here].reshape(-1, 3))
+        out[here] = vertices[found].reshape(-1, 3)
+    real = (out[:, 0] != out[:, 1]) & (out[:, 1] != out[:, 2]) & (out[:, 2] != out[:, 0])
+    return out[real], own[nearest[real]]

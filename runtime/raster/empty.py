@@ -1,0 +1,164 @@
+"""The empty sets of cameras that stand still: drawn once, and taken over where nothing has changed.
+
+An empty set is a view without anything that moves. For the host, and for rows of whole runs. Guarantees the
+same bytes as views that are drawn anew.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .device import vectorised
+from .glazing import Box, Glazing
+from .loaded import Loaded
+from .moments import Moments
+from .passes import Layer, Passes
+from .visibility import Visibility
+
+REUSED = 3  # views of one camera from which on the set is drawn once for all of them
+
+Buffers = Callable[[str, tuple[int, ...], type], Any]
+
+
+class EmptySets:
+    """The empty sets of the views drawn last."""
+
+    def __init__(self, buffer: Buffers, passes: Passes, visibility: Visibility) -> None:
+        from .kernels import reuse  # only now: it imports taichi
+
+        self._buffer, self._passes, self._visibility = buffer, passes, visibility
+        self._reuse, self._copy = reuse, vectorised(reuse.take_over)
+        self._kept: tuple[tuple[int, int], bytes] | None = None  # what is drawn: size, cameras and walls
+
+    def forget(self) -> None:
+        """Draw them anew the next time: the scene, or the memory they are in, is gone."""
+        self._kept = None
+
+    def drawn_for(
+        self,
+        loaded: Loaded,
+        moments: Moments,
+        glazing: Glazing | None,
+        view: NDArray[np.float32],
+        hidden: NDArray[np.int32],
+        size: tuple[int, int],
+    ) -> NDArray[np.int32]:
+        """Draw the empty sets that pay, once for all views of one camera and the same walls.
+
+        Returns which of them each view goes by, int32 [N]; -1 where it would not pay.
+        """
+        walls = hidden[:, : loaded.walls].astype(np.float32)
+        key = np.ascontiguousarray(np.concatenate([view, walls], axis=1))
+        _, first, of, count = np.unique(
+            key, axis=0, return_index=True, return_inverse=True, return_counts=True
+        )
+        chosen = np.flatnonzero(count >= REUSED)
+        number = np.full(len(count), -1, np.int32)
+        number[chosen] = np.arange(len(chosen))
+        wanted = (size, key[first[chosen]].tobytes())
+        if len(chosen) and wanted != self._kept:
+            self._kept = wanted
+            self._draw(loaded, moments, glazing, view[first[chosen]], hidden[first[chosen]], size)
+        return number[of.reshape(-1)]
+
+    def _draw(
+        self,
+        loaded: Loaded,
+        moments: Moments,
+        glazing: Glazing | None,
+        cameras: NDArray[np.float32],
+        hidden: NDArray[np.int32],
+        size: tuple[int, int],
+    ) -> None:
+        sets, passes = len(cameras), self._passes
+        layer = passes.layer("empty_", sets, size)
+        moment = np.full(sets, moments.count, np.int32)  # in which nobody is there
+        self._visibility.fill_empty(cameras, moment, hidden, layer.vis, size, sets)
+        layer.level.fill(passes.SHADE)
+        passes.shade(loaded, moments, layer, (cameras, moment, sets), size)
+        pixels = sets * size[0] * size[1]
+        self._shaded = self._buffer("empty_shaded", (pixels,), np.uint32)
+        self._shaded[:pixels] = layer.picture[:pixels]
+        passes.draw_lines(loaded, layer, cameras, sets, size)
+        if glazing is not None:
+            box, _ = glazing.boxes(cameras, np.zeros_like(moment), hidden, size)
+            glazing.lay(passes, moments, layer, (cameras, moment, hidden, box), size, True, movers=False)
+        self._final = self._buffer("empty_final", (pixels * 3,), np.uint8)
+        passes.even_out(layer, self._final[: pixels * 3], sets, size)
+        runs = sets * size[1] * -(-size[0] // passes.run)
+        self._reach = self._buffer("reach", (runs * self._reuse.REACH,), np.float32)
+        self._reuse.reach_of(cameras, layer.vis, loaded.arrays["basis"], sets, *size, self._reach)
+        blocks = sets * -(-size[1] // passes.run) * -(-size[0] // passes.run)
+        self._wide = self._buffer("wide_reach", (blocks * self._reuse.REACH,), np.float32)
+        self._reuse.widen(self._reach, sets, *size, self._wide)
+
+    def take_over(
+        self,
+        loaded: Loaded,
+        moments: Moments,
+        layer: Layer,
+        seen: tuple[NDArray[np.int32], NDArray[np.int32], Box],
+        size: tuple[int, int],
+        color: NDArray[np.uint8],
+        whole: bool,
+    ) -> None:
+        """Copy what is as in the empty sets, and note in ``layer.level`` what is left to do.
+
+        seen: the moment of each view, what :meth:`drawn_for` returned, and where glass may move; whole:
+        complete pictures, unsmoothed
+        """
+        moment, empty, box = seen
+        source = self._passes.layer("empty_", int(empty.max()) + 1, size)
+        run, views, a = self._passes.run, len(empty), loaded.arrays
+        block = self._buffer("block", (views * -(-size[1] // run) * -(-size[0] // run),), np.int32)
+        bounds = self._buffer("standing", (moments.count, 4), np.int32)
+        cells = (loaded.columns, loaded.rows)
+        self._reuse.standing(moments.ground, *cells, moments.count, bounds)
+        self._reuse.find(
+            moment,
+            empty,
+            layer.vis,
+            source.vis,
+            self._visibility.touched,
+            self._reach,
+            self._wide,
+            moments.frame,
+            moments.size,
+            moments.coarse,
+            a["floor"],
+            *cells,
+            moments.ground,
+            bounds,
+            box,
+            views,
+            *size,
+            layer.level,
+            block,
+        )
+        runs = size[0] // run
+        copied = self._buffer("copied", (views * runs * size[1],), np.int32)
+        self._reuse.settle(block, int(whole), views, *size, layer.level, copied)
+        colors = (self._shaded, source.edge, source.picture, layer.picture, layer.edge)
+        shaded, edge, inked, picture_to, edge_to = (x[: len(x) // run * run].reshape(-1, run) for x in colors)
+        self._copy(
+            empty,
+            copied,
+            shaded,
+            edge,
+            source.solid,
+            inked,
+            source.marks,
+            self._final[: len(self._final) // 48 * 48].view(np.uint32).reshape(-1, 4),
+            picture_to,
+            edge_to,
+            layer.solid,
+            layer.marks,
+            color.reshape(-1).view(np.uint32).reshape(-1, 4),
+            views,
+            runs,
+            size[1],
+        )

@@ -1,0 +1,152 @@
+"""Hatching: the tones of a shaded picture as strokes of ink on white paper.
+
+Strokes are slices of the world, and of people as they were modelled, so that they stay on what they
+are drawn on. Their spacing on the picture stays between one and two times SPACING: as one comes
+nearer, strokes grow in between; nothing jumps.
+"""
+
+# mypy: ignore-errors
+# Taichi reads annotations as kernel types and parses the bodies itself.
+
+import taichi as ti
+
+from .geometry import bounded, f1, f2, f3, i1, i2, item3, part3, row3, triangle, u32s, u64s, vec3
+from .paint import RUN, SHADE
+from .pattern import value_noise
+
+SPACING = 0.0085  # of the picture's height
+FIRST, SECOND = (0.61, 0.45, 0.65), (-0.52, 0.66, 0.55)  # across the strokes of the two layers
+PAPER = 0xFAF7F9FA  # luma, blue, green, red
+
+
+@ti.func
+def eased(x, low, high):
+    t = bounded((x - low) / (high - low), 0.0, 1.0)
+    return t * t * (3.0 - 2.0 * t)
+
+
+@ti.func
+def strokes(place, along, grow, spacing, half, lattice: ti.template()):
+    """Coverage 0..1 of parallel strokes.
+
+    place: across them, along: along them, metres; grow: metres across them a pixel; spacing, half: pixels
+    between strokes and half the width of one
+    """
+    wanted = 1.0 / ti.max(grow * spacing, 1e-9)  # strokes a metre
+    bits = ti.bit_cast(wanted, ti.i32)
+    octave = ti.bit_cast(bits & 0x7F800000, ti.f32)  # the power of two below it
+    finer = wanted / octave - 1.0
+    at = (
+        place * 2.0 * octave + (value_noise(along * octave * 0.4, place * octave * 0.3, lattice) - 0.5) * 0.45
+    )
+    line = ti.floor(at + 0.5)
+    odd = ti.cast(line, ti.i32) & 1
+    away = ti.abs(at - line) / (2.0 * octave * grow)
+    # a hand presses, and lifts the pen now and then
+    press = value_noise(along * octave * 0.22, line * 7.31, lattice)
+    width = half * (0.55 + 0.75 * press)
+    if odd == 1:
+        width *= eased(finer, 0.25, 1.0)
+    thin = bounded(width * 2.0, 0.0, 1.0)  # thinner than a pixel: paler
+    return bounded(ti.max(width, 0.5) - away + 0.5, 0.0, 1.0) * thin * eased(press, 0.10, 0.2)
+
+
+@ti.kernel
+def hatch_rows(
+    view: f2,
+    moment: i1,
+    vertices: f2,
+    rest: f2,
+    position: f3,
+    faces: i2,
+    static_faces: ti.i32,
+    static_vertices: ti.i32,
+    own: f2,
+    level: ti.f32,
+    lattice: f1,
+    vis: u64s,
+    todo: i1,
+    picture: u32s,
+    views: ti.i32,
+    width: ti.i32,
+    height: ti.i32,
+):
+    """Turn a shaded picture into strokes, in place.
+
+    own [F, 2]: how light each triangle is in all of the light, 1 for white, and the ink of its colour;
+    level: luma that stays white; todo: levels of runs
+    """
+    for line in range(views * height):
+        n = line // height
+        m = moment[n]
+        eye = part3(view, n, 0)
+        step = part3(view, n, 3) / view[n, 12]
+        down = -part3(view, n, 6) / view[n, 13]
+        first = part3(view, n, 9) + down * (line % height + 0.5 - view[n, 15]) + step * (0.5 - view[n, 14])
+        spacing = ti.max(SPACING * height, 3.2)
+        last = -2
+        plane, ga, gb = vec3(0), vec3(0), vec3(0)
+        offset, xa, xb = 1.0, 0.0, 0.0
+        for x in range(width):
+            i = line * width + x
+            t = triangle(vis, i)
+            if todo[line * ((width + RUN - 1) // RUN) + x // RUN] < SHADE:
+                continue
+            if t < 0:
+                picture[i] = ti.u32(PAPER)
+            else:
+                tone = ti.cast(picture[i] >> 24, ti.f32) / level
+                dark = 1.0 - tone
+                if t < static_faces:
+                    dark = 0.85 * dark - 0.05  # sets are quiet
+                else:
+                    # people: shadows whatever the colour, and what is dark itself
+                    dark = 0.62 * (1.0 - tone / own[t, 0]) + own[t, 1]
+                ink = 0.0
+                if dark > 0.1:
+                    if t != last:
+                        last = t
+                        a, b, c = faces[t, 0], faces[t, 1], faces[t, 2]
+                        p, q1, q2 = vec3(0), vec3(0), vec3(0)
+                        if t < static_faces:
+                            p = row3(vertices, a)
+                            q1, q2 = row3(vertices, b) - p, row3(vertices, c) - p
+                        else:
+                            a, b, c = a - static_vertices, b - static_vertices, c - static_vertices
+                            p = item3(position, m, a)
+                            q1, q2 = item3(position, m, b) - p, item3(position, m, c) - p
+                        cross = q1.cross(q2)
+                        inverse = 1.0 / ti.max(cross.norm_sqr(), 1e-20)
+                        plane = cross * ti.sqrt(inverse)
+                        offset = plane.dot(p - eye)
+                        r, e1, e2 = p, q1, q2
+                        if t >= static_faces:
+                            r = row3(rest, a)
+                            e1, e2 = row3(rest, b) - r, row3(rest, c) - r
+                        # places across the strokes are linear over the triangle
+                        g1, g2 = q2.cross(cross) * inverse, cross.cross(q1) * inverse
+                        wa, wb = vec3(FIRST), vec3(SECOND)
+                        ga, gb = g1 * wa.dot(e1) + g2 * wa.dot(e2), g1 * wb.dot(e1) + g2 * wb.dot(e2)
+                        xa, xb = wa.dot(r) + ga.dot(eye - p), wb.dot(r) + gb.dot(eye - p)
+                    ray = first + step * ti.cast(x, ti.f32)
+                    facing = plane.dot(ray)
+                    z = offset / facing
+                    ra, rb = ga.dot(ray), gb.dot(ray)
+                    tx, ty = plane.dot(step) / facing, plane.dot(down) / facing
+                    place_a, place_b = xa + z * ra, xb + z * rb
+                    across_a = ti.Vector([ga.dot(step) - ra * tx, ga.dot(down) - ra * ty]).norm()
+                    half = spacing * (0.07 + 0.12 * bounded(dark, 0.0, 1.0))
+                    ink = strokes(place_a, place_b, across_a * ti.abs(z), spacing, half, lattice)
+                    ink *= eased(dark, 0.1, 0.26)
+                    if dark > 0.46:
+                        across_b = ti.Vector(
+                            [gb.dot(step) - rb * tx, gb.dot(down) - rb * ty]
+                        ).norm() * ti.abs(z)
+                        other = strokes(place_b, place_a, across_b, spacing, half, lattice)
+                        ink = ti.max(ink, other * eased(dark, 0.46, 0.58))
+                        ink = ti.max(ink, eased(dark, 0.6, 0.76))
+                shade = 1.0 - 0.93 * ink
+                r8 = ti.cast(250.0 * shade + 0.5, ti.u32)
+                g8 = ti.cast(249.0 * shade + 0.5, ti.u32)
+                b8 = ti.cast(247.0 * shade + 0.5, ti.u32)
+                picture[i] = r8 | (g8 << 8) | (b8 << 16) | (((r8 * 5 + g8 * 9 + b8 * 2) >> 4) << 24)

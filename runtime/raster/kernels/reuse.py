@@ -1,0 +1,298 @@
+"""What changes in the picture of a camera that does not move, and what can be taken over from the empty set.
+
+Rows are worked on in runs of RUN pixels; a block is RUN runs one under the other. A run is drawn anew where
+something moving is in it or beside it, or where its light may not be that of the empty set: where it is not
+clear of the moment's shadow map or of what stands on the floor. Around those runs lines are drawn anew, and
+around these stair-steps are smoothed anew; everything else is copied. For the host, and rows of whole runs.
+"""
+
+# mypy: ignore-errors
+# Taichi reads annotations as kernel types and parses the bodies itself.
+
+import taichi as ti
+
+from .geometry import f1, f2, greater, i1, i2, lesser, nearness, part3, triangle, u64s, vec3
+from .light import BLOCK, BLOCK_BITS, FINE_BITS, across, coarse_size
+from .paint import DONE, INK, RUN, SHADE, SMOOTH
+from .shading import lift_of
+from .spans import uv
+
+NOWHERE, SHADED, INKED, FINAL = 0, 1, 2, 4  # what is copied into a run
+REACH = 9  # numbers kept of what a run sees: its bounds across the light, and over the floor
+HIGH = (1, 3, 6, 8)  # those that are upper bounds
+quads = ti.types.ndarray(dtype=ti.types.vector(4, ti.u32), ndim=1)
+MANY = 64  # blocks of a shadow map, cells of the floor: a run over more is drawn anew
+
+
+@ti.kernel
+def reach_of(view: f2, vis: u64s, basis: f1, views: ti.i32, width: ti.i32, height: ti.i32, reach: f1):
+    """Where each run of an empty set lies in the light, its neighbour's first pixel included.
+
+    reach, REACH numbers a run: light coordinates low x, high x, low y, high y, low z; then low x, high x,
+    low y, high y in the world. Low above high where nothing is seen.
+    """
+    runs = (width + RUN - 1) // RUN
+    for line in range(views * height):
+        n = line // height
+        eye = part3(view, n, 0)
+        step = part3(view, n, 3) / view[n, 12]
+        first = (
+            part3(view, n, 9)
+            + part3(view, n, 6) * ((view[n, 15] - (line % height + 0.5)) / view[n, 13])
+            + step * (0.5 - view[n, 14])
+        )
+        for run in range(runs):
+            low, high = vec3(1e30), vec3(-1e30)
+            floor_low, floor_high = vec3(1e30), vec3(-1e30)
+            for x in range(run * RUN, ti.min(width, run * RUN + RUN + 1)):
+                if triangle(vis, line * width + x) >= 0:
+                    p = eye + (first + step * ti.cast(x, ti.f32)) * (1.0 / nearness(vis, line * width + x))
+                    q = across(basis, p)
+                    low, high = ti.min(low, q), ti.max(high, q)
+                    floor_low, floor_high = ti.min(floor_low, p), ti.max(floor_high, p)
+            at = (line * runs + run) * REACH
+            for a in ti.static(range(2)):
+                reach[at + 2 * a] = low[a]
+                reach[at + 2 * a + 1] = high[a]
+                reach[at + 5 + 2 * a] = floor_low[a]
+                reach[at + 6 + 2 * a] = floor_high[a]
+            reach[at + 4] = low.z
+
+
+@ti.kernel
+def widen(reach: f1, views: ti.i32, width: ti.i32, height: ti.i32, wide: f1):
+    """Where each block of an empty set lies, as :func:`reach_of` says it of runs."""
+    runs = (width + RUN - 1) // RUN
+    bands = (height + RUN - 1) // RUN
+    for task in range(views * bands):
+        n, band = task // bands, task % bands
+        for run in range(runs):
+            to = (task * runs + run) * REACH
+            for a in ti.static(range(REACH)):
+                far = ti.static(a in HIGH)
+                best = -1e30 if far else 1e30
+                for y in range(band * RUN, ti.min(height, band * RUN + RUN)):
+                    own = reach[((n * height + y) * runs + run) * REACH + a]
+                    best = greater(best, own) if far else lesser(best, own)
+                wide[to + a] = best
+
+
+@ti.func
+def shaded(at, m, reach: ti.template(), frame: ti.template(), size, coarse: ti.template()):
+    """Whether anything of a moment's shadow map may be in the light of a run."""
+    out = False
+    if size > 1 and reach[at] <= reach[at + 1]:
+        lift = lift_of(1.0 / frame[m, 2])
+        left = ti.floor((reach[at] - lift - frame[m, 0]) * frame[m, 2])
+        right = ti.floor((reach[at + 1] + lift - frame[m, 0]) * frame[m, 2])
+        low = ti.floor((reach[at + 2] - lift - frame[m, 1]) * frame[m, 2])
+        high = ti.floor((reach[at + 3] + lift - frame[m, 1]) * frame[m, 2])
+        edge = ti.cast(size + BLOCK, ti.f32)
+        if right >= -BLOCK - 1 and left <= edge + 1 and high >= -BLOCK - 1 and low <= edge + 1:
+            if left < 0 or low < 0 or right >= size or high >= size:
+                out = True
+            else:
+                blocks, fine = size >> BLOCK_BITS, size >> FINE_BITS
+                begin = m * coarse_size(size) + 2 * fine * fine
+                i0, i1_ = ti.cast(left, ti.i32) >> BLOCK_BITS, ti.cast(right, ti.i32) >> BLOCK_BITS
+                j0, j1 = ti.cast(low, ti.i32) >> BLOCK_BITS, ti.cast(high, ti.i32) >> BLOCK_BITS
+                if (i1_ - i0 + 1) * (j1 - j0 + 1) > MANY:
+                    out = True
+                else:
+                    z = reach[at + 4] - lift
+                    for j in range(j0, j1 + 1):
+                        for i in range(i0, i1_ + 1):
+                            if z < coarse[begin + j * blocks + i]:
+                                out = True
+    return out
+
+
+@ti.kernel
+def standing(ground: f1, columns: ti.i32, rows: ti.i32, moments: ti.i32, bounds: i2):
+    """First and last column, first and last row [M, 4] of the floor's cells on which anything stands."""
+    for m in range(moments):
+        left, right, low, high = columns, -1, rows, -1
+        for j in range(rows):
+            for i in range(columns):
+                if ground[(m * rows + j) * columns + i] != 0:
+                    left, right = ti.min(left, i), ti.max(right, i)
+                    low, high = ti.min(low, j), j
+        bounds[m, 0], bounds[m, 1], bounds[m, 2], bounds[m, 3] = left, right, low, high
+
+
+@ti.func
+def stood_on(
+    at,
+    m,
+    bounds: ti.template(),
+    reach: ti.template(),
+    floor: ti.template(),
+    columns,
+    rows,
+    ground: ti.template(),
+):
+    """Whether anything stands on the floor where a run is."""
+    out = False
+    if reach[at + 5] <= reach[at + 6]:
+        wide, deep = ti.cast(columns, ti.f32), ti.cast(rows, ti.f32)
+        left = greater((reach[at + 5] - floor[0]) * floor[2] - 1.5, 0.0)
+        right = lesser((reach[at + 6] - floor[0]) * floor[2] + 1.5, wide - 1)
+        low = greater((reach[at + 7] - floor[1]) * floor[2] - 1.5, 0.0)
+        high = lesser((reach[at + 8] - floor[1]) * floor[2] + 1.5, deep - 1)
+        if left <= right and low <= high:
+            i0, i1_ = (
+                ti.max(ti.cast(left, ti.i32), bounds[m, 0]),
+                ti.min(ti.cast(right, ti.i32), bounds[m, 1]),
+            )
+            j0, j1 = ti.max(ti.cast(low, ti.i32), bounds[m, 2]), ti.min(ti.cast(high, ti.i32), bounds[m, 3])
+            if i0 > i1_ or j0 > j1:
+                out = False
+            elif (i1_ - i0 + 1) * (j1 - j0 + 1) > 4 * MANY:
+                out = True
+            else:
+                for j in range(j0, j1 + 1):
+                    for i in range(i0, i1_ + 1):
+                        if ground[m * rows * columns + j * columns + i] != 0:
+                            out = True
+    return out
+
+
+@ti.kernel
+def find(
+    moment: i1,
+    empty: i1,
+    vis: u64s,
+    empty_vis: u64s,
+    touched: i1,
+    reach: f1,
+    wide: f1,
+    frame: f2,
+    size: ti.i32,
+    coarse: f1,
+    floor: f1,
+    columns: ti.i32,
+    rows: ti.i32,
+    ground: f1,
+    bounds: i2,
+    box: i2,
+    views: ti.i32,
+    width: ti.i32,
+    height: ti.i32,
+    level: i1,
+    block: i1,
+):
+    """Which runs are drawn anew: their level is SHADE, others' DONE. block: 1 where one of its runs is.
+
+    empty: of each view, the picture of the empty set that it goes by, -1 for none; touched: of each run,
+    whether something that moves may be in it; box [views, 4]: columns and rows in which there may be
+    glass that moves
+    """
+    runs = (width + RUN - 1) // RUN
+    bands = (height + RUN - 1) // RUN
+    for task in range(views * bands):
+        n, band = task // bands, task % bands
+        m, s = moment[n], empty[n]
+        for run in range(runs):
+            some = 0
+            clear = False  # whether the light of the whole block is that of the empty set
+            if s >= 0:
+                at = ((s * bands + band) * runs + run) * REACH
+                clear = not stood_on(at, m, bounds, wide, floor, columns, rows, ground)
+                if clear:
+                    clear = not shaded(at, m, wide, frame, size, coarse)
+            for y in range(band * RUN, ti.min(height, band * RUN + RUN)):
+                anew = s < 0
+                x = run * RUN
+                k = (n * height + y) * runs + run
+                if not anew:
+                    here, there = (n * height + y) * width, (s * height + y) * width
+                    if touched[k] != 0:
+                        i = x
+                        while i < width and i < x + RUN and not anew:
+                            anew = vis[here + i] != empty_vis[there + i]
+                            i += 1
+                    # the last pixel of the run before and the first of the next one have a say
+                    if not anew and run > 0 and touched[k - 1] != 0:
+                        anew = vis[here + x - 1] != empty_vis[there + x - 1]
+                    if not anew and run < runs - 1 and touched[k + 1] != 0:
+                        anew = vis[here + x + RUN] != empty_vis[there + x + RUN]
+                    if box[n, 2] <= y < box[n, 3] and x < box[n, 1] and x + RUN > box[n, 0]:
+                        anew = True
+                if not anew and not clear:
+                    at = ((s * height + y) * runs + run) * REACH
+                    anew = stood_on(at, m, bounds, reach, floor, columns, rows, ground)
+                    if not anew:
+                        anew = shaded(at, m, reach, frame, size, coarse)
+                level[k] = SHADE if anew else DONE
+                if anew:
+                    some = 1
+            block[task * runs + run] = some
+
+
+@ti.kernel
+def settle(block: i1, whole: ti.i32, views: ti.i32, width: ti.i32, height: ti.i32, level: i1, source: i1):
+    """The levels of all runs, and in ``source`` what is copied into each: SHADED, INKED or FINAL colours.
+
+    whole: all pictures are to be complete before they are smoothed, for what is laid over them
+    """
+    runs = (width + RUN - 1) // RUN
+    bands = (height + RUN - 1) // RUN
+    for task in range(views * bands):
+        n, band = task // bands, task % bands
+        for run in range(runs):
+            away = 4  # blocks to the nearest that is drawn anew
+            for j in range(ti.max(band - 3, 0), ti.min(bands, band + 4)):
+                for i in range(ti.max(run - 3, 0), ti.min(runs, run + 4)):
+                    if block[(n * bands + j) * runs + i] == 1:
+                        away = ti.min(away, ti.max(ti.abs(j - band), ti.abs(i - run)))
+            for y in range(band * RUN, ti.min(height, band * RUN + RUN)):
+                k = (n * height + y) * runs + run
+                source[k] = NOWHERE
+                if level[k] != SHADE:
+                    if away <= 1:
+                        level[k] = INK
+                        source[k] = SHADED
+                    elif away == 2 or whole == 1:
+                        level[k] = SMOOTH
+                        source[k] = INKED
+                    else:
+                        source[k] = INKED + FINAL if away == 3 else FINAL
+
+
+@ti.kernel
+def take_over(
+    empty: i1,
+    source: i1,
+    empty_shaded: uv,
+    empty_edge: uv,
+    empty_solid: i1,
+    empty_inked: uv,
+    empty_marks: i1,
+    empty_final: quads,
+    picture: uv,
+    edge: uv,
+    solid: i1,
+    marks: i1,
+    final: quads,
+    views: ti.i32,
+    runs: ti.i32,
+    height: ti.i32,
+):
+    """Copy from the empty sets what :func:`settle` said. Rows are whole runs."""
+    for line in range(views * height):
+        begin = line * runs
+        there = (empty[line // height] * height + line % height) * runs
+        for run in range(runs):
+            what = source[begin + run]
+            k, from_k = begin + run, there + run
+            if what != NOWHERE and what != FINAL:
+                edge[k] = empty_edge[from_k]
+                solid[k] = empty_solid[from_k]
+                if what == SHADED:
+                    picture[k] = empty_shaded[from_k]
+                else:
+                    picture[k] = empty_inked[from_k]
+                    marks[k] = empty_marks[from_k]
+            if what >= FINAL:
+                for i in ti.static(range(3)):
+                    final[3 * k + i] = empty_final[3 * from_k + i]

@@ -1,0 +1,189 @@
+"""A scene where the kernels can use it: its arrays, and what is worked out of them once.
+
+Assumes a valid scene. Everything here stays as it is until the next scene is loaded.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from .bake import light_basis
+from .device import Backend
+from .looks import glass_colors, packed_light, paper_level, paper_tones
+from .panes import Glass, divided
+from .prepare import Prepared, check, prepare
+from .types import LOOSE, RenderScene, Style
+
+SET_SHADOW = 2048  # texels along the set's shadow map
+SET_TEXEL = 0.006  # metres, finest
+FLOOR_CELL = 0.05  # metres
+FLOOR_CELLS = 512  # most cells along the floor
+UPLOADED = (
+    "vertices",
+    "normals",
+    "rest",
+    "rest_normals",
+    "faces",
+    "color",
+    "info",
+    "clusters",
+    "sphere",
+    "surface_object",
+    "one_color",
+    "casters",
+    "area",
+)
+
+
+@dataclass(frozen=True, eq=False)
+class ShadowMap:
+    """A set's shadow map of size x size texels: frame, depth and coarse as in ``kernels/light.py``."""
+
+    size: int
+    frame: Any
+    depth: Any
+    coarse: Any
+
+
+@dataclass(frozen=True, eq=False)
+class Chart:
+    """Where the set shades its own triangles: plot, begin, side and kinds as in ``kernels/chart.py``."""
+
+    plot: Any
+    begin: Any
+    side: Any
+    kinds: Any
+
+
+@dataclass(frozen=True, eq=False)
+class Loaded:
+    """A scene on the device.
+
+    scene: its flat arrays; arrays: those of them that kernels read, by name; glass: what is clear, None
+    without; shadow: the set's map; sheet, chart: what shading needs of each triangle of the set; columns,
+    rows: of the floor's cells; walls, people: how many can be left out; palette: matrices that a moment
+    needs; paper: brightness of the paper for hatching
+    """
+
+    scene: Prepared
+    arrays: dict[str, Any]
+    glass: Glass | None
+    shadow: ShadowMap
+    sheet: Any
+    chart: Chart
+    columns: int
+    rows: int
+    walls: int
+    people: int
+    palette: int
+    paper: float
+
+    @property
+    def static_vertices(self) -> int:
+        return len(self.scene.vertices)
+
+
+def loaded(scene: RenderScene, style: Style, backend: Backend, shading: Any) -> Loaded:
+    """Prepare and upload ``scene``; shading: the kernels of the style. Raises ValueError."""
+    check(scene)
+    fitting = scene.fitting if scene.fitting is not None else np.zeros(0, np.int32)
+    people = max(LOOSE - int(fitting.min(initial=LOOSE)), 0)
+    opaque, glass = divided(scene)
+    if glass is not None:
+        glass = replace(glass, color=glass_colors(glass.color, style))
+    prepared = prepare(opaque, style)
+    arrays = _uploaded(prepared, opaque, style, backend)
+    arrays["floor"], columns, rows = _floor(prepared, backend)
+    shadow = _set_shadow(prepared, arrays, style, backend)
+    count = prepared.static_faces
+    sheet = backend.buffer((2 * max(count, 1) * shading.SHEET,), np.float32)
+    shading.fold(
+        *(arrays[name] for name in ("vertices", "normals", "faces", "color", "info", "light", "basis")),
+        shadow.frame,
+        shadow.size,
+        shadow.depth,
+        shadow.coarse,
+        count,
+        sheet,
+    )
+    chart = _chart(prepared, arrays, shadow, sheet, style, backend, shading)
+    palette = int(opaque.joints.max()) + 1 if len(opaque.joints) else 0
+    paper = paper_level(opaque.light)
+    surfaces, extent = (shadow, sheet, chart), (columns, rows)
+    return Loaded(prepared, arrays, glass, *surfaces, *extent, opaque.wall_count, people, palette, paper)
+
+
+def _chart(
+    prepared: Prepared,
+    arrays: dict[str, Any],
+    shadow: ShadowMap,
+    sheet: Any,
+    style: Style,
+    backend: Backend,
+    shading: Any,
+) -> Chart:
+    """Which parts of the set's triangles its own shadow falls on."""
+    from .kernels import chart  # only now: it imports taichi
+
+    count = prepared.static_faces
+    plot, begin, side = chart.plots(prepared.vertices, prepared.faces[:count])
+    kinds = backend.buffer((max(int(begin[-1]), 1),), np.uint8)
+    out = Chart(backend.upload(plot), backend.upload(begin), backend.upload(side), kinds)
+    if style.shadows:
+        shading.survey(
+            *(arrays[name] for name in ("vertices", "normals", "faces", "light", "basis")),
+            *(shadow.frame, shadow.size, shadow.depth, shadow.coarse),
+            sheet,
+            *(out.begin, out.side, count, kinds),
+        )
+    return out
+
+
+def _uploaded(prepared: Prepared, scene: RenderScene, style: Style, backend: Backend) -> dict[str, Any]:
+    up, volume = backend.upload, prepared.volume
+    arrays = {name: up(getattr(prepared, name)) for name in UPLOADED}
+    arrays["joints"] = up(prepared.detail.scene.joints.astype(np.int32))
+    arrays["weights"] = up(prepared.detail.scene.weights.astype(np.float32))
+    arrays["light"] = up(packed_light(scene.light, style))
+    if style.hatch:
+        arrays["tone"] = up(paper_tones(prepared.color, prepared.info[:, 1] & 0xFF, scene.light))
+    arrays["basis"] = up(light_basis(np.array(scene.light.sun)).astype(np.float32).reshape(-1))
+    arrays["values"] = up(volume.values.reshape(-1))
+    arrays["volume_low"] = up(np.array([*volume.low, 1.0 / volume.cell], np.float32))
+    return arrays
+
+
+def _floor(prepared: Prepared, backend: Backend) -> tuple[Any, int, int]:
+    """The grid of floor cells on which people leave their contact shadow, its columns and rows."""
+    low, high = (corner[:2] for corner in prepared.stage)
+    low, high = low - 0.5, high + 0.5
+    cell = max(FLOOR_CELL, float((high - low).max()) / FLOOR_CELLS)
+    columns, rows = (int(n) for n in np.ceil((high - low) / cell) + 2)
+    floor = np.array([*(low - cell), 1.0 / cell, *prepared.levels], np.float32)
+    return backend.upload(floor), columns, rows
+
+
+def _set_shadow(prepared: Prepared, arrays: dict[str, Any], style: Style, backend: Backend) -> ShadowMap:
+    """The shadow map of the set."""
+    from .kernels import light  # only now: it imports taichi
+
+    size, up = SET_SHADOW, backend.upload
+    frame = up(np.array([[1e6, 1e6, 100.0]], np.float32))  # no map: out of reach
+    if not len(prepared.set_casters) or not style.shadows:
+        nothing = up(np.zeros(1, np.float32))
+        return ShadowMap(1, frame, nothing, nothing)
+    # only what casts, so that the map is not spent on the plain around
+    used, corners = np.unique(prepared.faces[prepared.set_casters], return_inverse=True)
+    vertices = up(prepared.vertices[used][None])
+    faces = up(corners.reshape(-1, 3).astype(np.int32))
+    casters = up(np.arange(len(prepared.set_casters), dtype=np.int32))
+    depth = backend.buffer((size * size,), np.float32)
+    coarse = backend.buffer((light.summary_size(size),), np.float32)
+    spare = backend.buffer((light.summary_size(size),), np.float32)
+    seen = backend.buffer(vertices.shape, np.float32)
+    light.fit(vertices, arrays["basis"], SET_TEXEL, size, len(used), 1, seen, frame)
+    light.cast(seen, faces, casters, 0, frame, size, 1, depth, spare, coarse)
+    return ShadowMap(size, frame, depth, coarse)

@@ -1,0 +1,170 @@
+"""The passes from a visibility buffer to finished bytes: shade, dress, ink, smooth.
+
+Assumes filled visibility buffers. Guarantees that a run of pixels whose level says so is left as it is, and
+that a view comes out the same whatever else is in its batch.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .device import Backend
+from .film import film_table, to_encoded, to_linear
+from .loaded import Loaded
+from .moments import Moments
+from .types import Style
+
+Buffers = Callable[[str, tuple[int, ...], type], Any]
+
+
+@dataclass(frozen=True, eq=False)
+class Layer:
+    """Buffers of views that are drawn together, all flat.
+
+    vis: visibility, uint64; picture: uint32 colours; edge: uint32, what lines are drawn from; and for each
+    run of pixels solid, marks (see the kernels) and level (what is left to do), int32
+    """
+
+    vis: Any
+    picture: Any
+    edge: Any
+    solid: Any
+    marks: Any
+    level: Any
+
+
+class Passes:
+    """The passes of one style over one scene. run: pixels in a run; film, linear, table: tables of colours"""
+
+    def __init__(self, backend: Backend, buffer: Buffers, style: Style) -> None:
+        from .kernels import hatch, ink, paint, pattern, shading, smooth  # only now: they import taichi
+
+        self._buffer, self._style = buffer, style
+        self._hatch, self._pattern, self._smooth = hatch, pattern, smooth
+        self.SHADE: int = paint.SHADE
+        self.shading = shading.shading_kernels(style)
+        self._ink = ink.ink_kernels(style)
+        self.run: int = self.shading.RUN
+        table = np.round(to_encoded(np.arange(4096) / 4095.0) * 255.0).astype(np.uint32)
+        self.film = backend.upload(film_table())
+        self.linear = backend.upload(to_linear(np.arange(256) / 255.0).astype(np.float32))
+        self.table = backend.upload(table)
+        self._lattice = backend.upload(pattern.noise_lattice())
+
+    def layer(self, name: str, views: int, size: tuple[int, int]) -> Layer:
+        """Buffers for drawing some views; those of one name are the same memory."""
+        pixels = views * size[0] * size[1]
+        runs = views * size[1] * -(-size[0] // self.run)
+        return Layer(
+            self._buffer(name + "vis", (pixels,), np.uint64),
+            self._buffer(name + "picture", (pixels,), np.uint32),
+            self._buffer(name + "edge", (pixels,), np.uint32),
+            self._buffer(name + "solid", (runs,), np.int32),
+            self._buffer(name + "marks", (runs,), np.int32),
+            self._buffer(name + "level", (runs,), np.int32),
+        )
+
+    def shade(
+        self,
+        loaded: Loaded,
+        moments: Moments,
+        layer: Layer,
+        seen: tuple[Any, Any, int],
+        size: tuple[int, int],
+    ) -> None:
+        """Light, and the patterns of materials or strokes. seen: views, moments, how many views"""
+        view, moment, views = seen
+        a, scene = loaded.arrays, loaded.scene
+        self.shading.rows(
+            view,
+            moment,
+            a["vertices"],
+            a["normals"],
+            moments.position,
+            moments.normal,
+            a["faces"],
+            a["color"],
+            a["info"],
+            loaded.sheet,
+            loaded.chart.plot,
+            loaded.chart.begin,
+            loaded.chart.side,
+            loaded.chart.kinds,
+            scene.static_faces,
+            loaded.static_vertices,
+            a["light"],
+            a["basis"],
+            loaded.shadow.frame,
+            loaded.shadow.size,
+            loaded.shadow.depth,
+            loaded.shadow.coarse,
+            moments.frame,
+            moments.size,
+            moments.depth,
+            moments.coarse,
+            *scene.volume.values.shape,
+            a["volume_low"],
+            a["values"],
+            a["floor"],
+            loaded.columns,
+            loaded.rows,
+            moments.ground,
+            self.film,
+            self._lattice,
+            layer.vis,
+            layer.picture,
+            layer.edge,
+            layer.solid,
+            layer.level,
+            views,
+            *size,
+        )
+        extent = (views, *size)
+        if self._style.hatch:
+            places = (a["vertices"], a["rest"], moments.position, a["faces"])
+            counts = (scene.static_faces, loaded.static_vertices)
+            paper = (a["tone"], loaded.paper, self._lattice)
+            strokes = (layer.vis, layer.level, layer.picture)
+            self._hatch.hatch_rows(view, moment, *places, *counts, *paper, *strokes, *extent)
+        elif not self._style.clay:
+            kept = (layer.vis, layer.solid, layer.level, layer.picture)
+            sheet = (loaded.sheet, scene.static_faces, self._lattice)
+            self._pattern.grain_rows(view, *sheet, *kept, *extent)
+
+    def draw_lines(self, loaded: Loaded, layer: Layer, view: Any, views: int, size: tuple[int, int]) -> None:
+        """Ink, and marks where something ends."""
+        a = loaded.arrays
+        self._ink.rows(
+            view,
+            layer.picture,
+            layer.edge,
+            layer.vis,
+            layer.solid,
+            a["surface_object"],
+            a["one_color"],
+            loaded.scene.moving_surface,
+            self.linear,
+            self.table,
+            layer.marks,
+            layer.level,
+            views,
+            *size,
+        )
+
+    def even_out(self, layer: Layer, color: NDArray[np.uint8], views: int, size: tuple[int, int]) -> None:
+        """Smoothed bytes into ``color``."""
+        final = color.reshape(-1)
+        smooth = self._smooth.smooth_rows
+        if size[0] % 4 == 0:
+            final, smooth = final.view(np.uint32), self._smooth.smooth_words
+        smooth(layer.picture, layer.marks, layer.level, self.linear, self.table, final, views, *size)
+
+    def object_ids(self, loaded: Loaded, layer: Layer, objects: NDArray[np.int32]) -> None:
+        """Which object each pixel shows, into ``objects`` [N, H, W]."""
+        out = objects.reshape(-1)
+        self._smooth.object_ids(layer.edge, loaded.arrays["surface_object"], out, len(out))

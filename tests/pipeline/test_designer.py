@@ -1,0 +1,71 @@
+"""The virtual designer: faults are out, weak criteria count, and nothing is picked twice."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from vdsl.cinema.measures import MEASURES
+from vdsl.cinema.track import CameraTrack, look_at_rotation
+from vdsl.pipeline.designer import COUNTS, CRITERIA, LEAST, MOST, appeal, faults, judged, picks
+from vdsl.propose.types import CameraProposal
+
+GOOD = dict.fromkeys(MEASURES, 0.0) | {
+    "visibility": 1.0, "ends_visible": 1.0, "head_visible": 1.0, "in_frame": 1.0, "view": 1.0, "face": 0.6,
+    "interest": 1.0, "clearance": 1.0, "headroom": 0.1, "lead_room": 0.1, "height": 1.5,
+}  # fmt: skip
+
+
+def camera(index: int, azimuth: float = 0.0, **measures: float) -> CameraProposal:
+    position = np.tile(3.0 * np.array([np.cos(azimuth), np.sin(azimuth), 0.5]), (20, 1))
+    look_at = np.tile([0.0, 0.0, 1.4], (20, 1))
+    track = CameraTrack(
+        position, look_at_rotation(position, look_at), np.full(20, 50.0), look_at, (36.0, 20.25)
+    )
+    hidden = np.zeros(0, bool)
+    return CameraProposal(
+        index, 0, "static", "medium", "eye-level", {}, track, hidden, measures=GOOD | measures
+    )
+
+
+def test_every_criterion_has_faults_and_counts() -> None:
+    assert {c for c, _, _ in (*LEAST, *MOST)} == set(CRITERIA)
+    assert sum(COUNTS.values()) == pytest.approx(1.0)
+    assert not any(faults(GOOD).values())
+    for criterion, name, limit in LEAST:
+        assert faults(GOOD | {name: limit - 0.01})[criterion], name
+    for criterion, name, limit in MOST:
+        assert faults(GOOD | {name: limit * 1.05})[criterion], name
+
+
+WORSE = {
+    "visibility": 0.96, "face": -0.5, "headroom_error": 0.1, "lead_room": -0.1, "thirds_error": 0.15,
+    "clearance": 0.35, "jerk": 6.0, "foreground": 0.04, "size_drift": 0.7, "angular_speed": 60.0,
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", WORSE)
+def test_what_is_worse_in_one_thing_appeals_less(name: str) -> None:
+    assert appeal(GOOD | {name: WORSE[name]}) < appeal(GOOD) - 0.002
+
+
+def test_a_weak_criterion_is_not_made_up_for() -> None:
+    even = appeal(GOOD | {"headroom_error": 0.05, "thirds_error": 0.07})
+    uneven = appeal(GOOD | {"headroom_error": 0.3})
+    assert uneven < even
+
+
+def test_faulty_takes_are_never_picked_and_no_two_look_alike() -> None:
+    cameras = (
+        camera(0, 0.0, thirds_error=0.1),
+        camera(1, 0.01),
+        camera(2, 1.0, headroom_error=0.05),
+        camera(3, 2.0, visibility=0.5),
+        camera(4, 3.0, jerk=50.0),
+    )
+    assert picks(cameras, 4) == [1, 2]
+    assert picks(cameras, 1) == [1]
+    assert picks((), 3) == []
+    opinion = judged(cameras)
+    assert (opinion[[3, 4]] < 0).all()
+    assert (opinion[[0, 1, 2]] > 0).all()

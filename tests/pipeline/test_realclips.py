@@ -1,0 +1,118 @@
+"""Clips out of films, and what a writer's choices teach."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from ranker.data import Dataset
+from ranker.errors import RankerError
+from ranker.taste import Taste, save_taste
+from runtime.video import VideoError, write_video
+from vdsl.pipeline.keys import judge_digest
+from vdsl.pipeline.lock import lock_path
+from vdsl.pipeline.options import Options
+from vdsl.pipeline.realclips import add_films, add_picks, clip_of, preferences, words_of
+from vdsl.pipeline.tasting import home_of, taste_of
+
+
+def film(path: Path, frames: int = 24, blue: int = 40) -> None:
+    """A film that grows lighter."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    pictures = (np.full((48, 64, 3), (8 * t, 8 * t, blue), np.uint8) for t in range(frames))
+    write_video(path, pictures, (24, 1))
+
+
+def test_a_clip_is_the_middles_of_eight_parts(tmp_path: Path) -> None:
+    film(tmp_path / "a.mp4")
+    clip = clip_of(tmp_path / "a.mp4", 32)
+    assert clip.shape == (8, 32, 32, 3)
+    assert np.allclose(clip[:, 16, 16, 0], 8 * (3 * np.arange(8) + 1), atol=6)
+
+
+def test_names_say_classes() -> None:
+    assert words_of("pan-left_medium_eye-level_012") == ("pan", "medium", "eye-level")
+    assert words_of("CU crane-up") == ("crane", "close-up", None)
+    assert words_of("IMG_2041") == (None, None, None)
+
+
+def test_real_clips_are_added_once_and_bad_ones_told(tmp_path: Path) -> None:
+    films, data = tmp_path / "films", tmp_path / "data"
+    film(films / "one" / "static_medium_1.mp4")
+    film(films / "two" / "b.mov")
+    film(films / "two" / "short.mp4", frames=5)
+    (films / "broken.mp4").write_bytes(b"no film")
+    heard: list[str] = []
+    assert add_films(data, films, 0, heard.append, 32) == 2
+    assert add_films(data, films, 0, heard.append, 32) == 0
+    assert any("short.mp4" in text for text in heard)
+    assert any("broken.mp4" in text for text in heard)
+    labels = Dataset(data).labels
+    assert [(x.professional, x.movement, x.about["file"]) for x in labels] == [
+        (True, "static", "one/static_medium_1.mp4"),
+        (True, None, "two/b.mov"),
+    ]
+    assert len({x.group for x in labels}) == 2
+    with pytest.raises(VideoError, match="8 frames"):
+        clip_of(films / "two" / "short.mp4")
+    with pytest.raises(RankerError, match="no clips"):
+        add_films(data, tmp_path / "data", 0)
+
+
+def script_with_choice(folder: Path) -> Path:
+    """A storyboard with a chosen take, and what matters of its build."""
+    script, shot = folder / "tale.vds", "kitchen-anna-wave"
+    script.write_text("", "utf-8")
+    keys = ("0-aaaaaaaa", "1-bbbbbbbb", "2-cccccccc")
+    lock_path(script).write_text(
+        f'vds.lock/1\nseed 0\n\ntake {shot} {keys[1]} of 80 line 9c41d2e07a55 "push medium high-angle"\n'
+    )
+    takes = []
+    for rank, key in enumerate(keys, 1):
+        film(folder / "build" / "tale" / "shots" / shot / f"take-{rank}.mp4", blue=60 * rank)
+        takes.append({"rank": rank, "key": key, "movement": "push", "scale": "medium", "angle": "high-angle"})
+    document = {"shots": [{"id": shot, "takes": takes}]}
+    (folder / "build" / "tale" / "storyboard.json").write_text(json.dumps(document))
+    return script
+
+
+def test_choices_are_read_with_the_takes_they_were_among(tmp_path: Path) -> None:
+    script = script_with_choice(tmp_path)
+    (liked,) = preferences(script, 32)
+    assert liked.frames.shape == (3, 8, 32, 32, 3)
+    assert liked.chosen == 1
+    assert abs(int(liked.frames[1, 0, 8, 8, 2]) - 120) < 8
+    assert add_picks(tmp_path / "data", [script], 0, 32) == 1
+    assert add_picks(tmp_path / "data", [script], 0, 32) == 0
+    (label,) = Dataset(tmp_path / "data").labels
+    assert (label.movement, label.scale, label.angle) == ("push/pull", "medium", "high-angle")
+    lock_path(script).unlink()
+    assert preferences(script) == []
+
+
+def test_choices_without_a_build_are_told(tmp_path: Path) -> None:
+    script = script_with_choice(tmp_path)
+    document = tmp_path / "build" / "tale" / "storyboard.json"
+    document.write_text("{}")
+    with pytest.raises(RankerError, match="compile"):
+        preferences(script)
+    document.unlink()
+    with pytest.raises(RankerError, match="compile"):
+        preferences(script)
+
+
+def test_a_taste_belongs_to_its_project_and_counts_in_what_is_kept(tmp_path: Path) -> None:
+    script = tmp_path / "a" / "b" / "tale.vds"
+    script.parent.mkdir(parents=True)
+    (tmp_path / "a" / "vds.toml").write_text("")
+    assert taste_of(script) is None
+    assert home_of(script) == tmp_path / "a" / "vds.taste"
+    assert home_of(tmp_path / "tale.vds") == tmp_path / "vds.taste"
+    save_taste(tmp_path / "vds.taste", Taste(np.ones(4, np.float32), np.zeros(4, np.float32), "0" * 64, 1))
+    assert taste_of(script) is None  # another project's
+    save_taste(home_of(script), Taste(np.ones(4, np.float32), np.zeros(4, np.float32), "0" * 64, 1))
+    assert taste_of(script) == home_of(script)
+    assert judge_digest(Options(taste=home_of(script))) != judge_digest(Options())

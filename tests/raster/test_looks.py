@@ -1,0 +1,111 @@
+"""The looks: clay is of one material, ink is strokes on paper that stay where they are."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+from raster_scenes import box, looking, room, scene, sphere, still
+
+from runtime.materials import MATERIALS
+from runtime.raster.looks import glass_colors, packed_light, paper_tones
+from runtime.raster.renderer import Renderer
+from runtime.raster.types import STYLES, RenderScene, Views
+from runtime.world import Light
+
+GREY = ((0.5, 0.5, 0.5), (0.5, 0.5, 0.5))
+
+
+@lru_cache(maxsize=4)
+def renderer(look: str) -> Renderer:
+    return Renderer("cpu", STYLES[look])
+
+
+def drawn(
+    look: str, content: RenderScene, views: Views, size: tuple[int, int] = (160, 90)
+) -> NDArray[np.uint8]:
+    renderer(look).load(content)
+    return renderer(look).render(still(2), views, size).color
+
+
+EYE = looking([(2.6, -1.8, 1.5)], [(2.0, 1.8, 1.0)])
+
+
+@pytest.mark.parametrize("look", sorted(STYLES))
+def test_a_batch_gives_what_its_views_give_one_by_one(look: str) -> None:
+    eyes, aims = [(2.6, -1.8, 1.5), (0.5, 0.2, 1.6)], [(2.0, 1.8, 1.0)] * 2
+    both = drawn(look, room(), looking(eyes, aims), (61, 45))
+    for n in range(2):
+        alone = drawn(look, room(), looking(eyes[n : n + 1], aims[:1]), (61, 45))
+        np.testing.assert_array_equal(both[n], alone[0])
+
+
+def test_clay_has_hardly_any_colour_and_board_has() -> None:
+    def colourfulness(look: str) -> float:
+        picture = drawn(look, room(), EYE)[0].astype(float)
+        return float(np.quantile(np.ptp(picture, axis=-1), 0.99))
+
+    assert colourfulness("clay") < 60 < 90 < colourfulness("board")
+
+
+def test_clay_is_deep_in_corners() -> None:
+    content = scene([box((-2, -2, -0.1), (2, 2, 0)), box((-2, 1.9, 0), (2, 2, 2.6), part=1)], [])
+    views = looking([(0.0, -2.5, 1.3)], [(0.0, 1.9, 0.4)])
+    floor = drawn("clay", content, views)[0, :, 80].astype(float).mean(axis=-1)
+    corner = int(np.argmin(floor[30:]) + 30)
+    assert floor[corner] < 0.8 * floor[-1], "the light falls off towards the corner"
+
+
+def test_ink_is_black_and_white() -> None:
+    picture = drawn("ink", room(), EYE, (320, 180))[0].astype(float)
+    assert np.ptp(picture, axis=-1).max() < 14, "no colour"
+    luma = picture.mean(axis=-1)
+    assert (luma > 235).mean() > 0.35, "paper"
+    assert (luma < 120).mean() > 0.02, "ink"
+
+
+def test_strokes_stay_on_what_they_are_drawn_on() -> None:
+    """A step to the side moves the strokes of a ball with the ball."""
+    content = scene([], [sphere((0, 3, 1.5), (0.8, 0.8, 0.8), (0.35, 0.3, 0.3), rings=40)])
+    size, step = (320, 180), 0.02
+    views = looking([(0.0, 0.0, 1.5), (step, 0.0, 1.5)], [(0.0, 3.0, 1.5), (step, 3.0, 1.5)])
+    pictures = drawn("ink", content, views, size)
+    first, second = (p.astype(float).mean(axis=-1) for p in pictures)
+    focal = 320 * 35 / 36
+    inner = slice(60, 120), slice(120, 200)
+
+    def apart(shift: int) -> float:
+        return float(np.abs(first - np.roll(second, shift, axis=1))[inner].mean())
+
+    near = round(step / 2.2 * focal)
+    assert min(apart(near), apart(near - 1)) < 0.6 * apart(-near)
+
+
+def test_paper_takes_dark_cloth_for_black_and_leaves_skin_open() -> None:
+    light = Light((0.3, 0.2, 0.9), (0.7, 0.66, 0.56), (1.1, 1.1, 1.1), (1.0, 1.0, 1.0), GREY)
+    cloth, plain = MATERIALS.index("cloth"), MATERIALS.index("plain")
+    pale, tan, navy = (0.8, 0.8, 0.8), (0.5, 0.3, 0.16), (0.015, 0.02, 0.06)
+    tones = paper_tones(np.array([pale, tan, navy]), np.array([cloth, plain, cloth]), light)
+    assert tones[0].tolist() == [1.0, 0.0]
+    assert tones[1, 1] < 0.05
+    assert tones[2, 1] > 0.7
+    (_, as_skin), (_, as_cloth) = paper_tones(np.array([tan, tan]) / 3, np.array([plain, cloth]), light)
+    assert as_skin < as_cloth
+
+
+def test_clay_is_nearly_as_light_at_night_as_by_day() -> None:
+    def sky(share: float) -> float:
+        sun, above = (share, 0.97 * share, 0.87 * share), (0.76 * share, 0.8 * share, 0.85 * share)
+        packed = packed_light(Light((0.3, 0.2, 0.9), sun, above, (0.6, 0.58, 0.54), GREY), STYLES["clay"])
+        return float(packed[6:9].sum())
+
+    assert 0.7 * sky(1.0) < sky(0.4) < 0.9 * sky(1.0)
+
+
+def test_glass_has_its_tint_only_where_there_are_colours() -> None:
+    tinted = np.array([[0.2, 0.5, 0.3]])
+    assert (glass_colors(tinted, STYLES["board"]) == tinted.astype(np.float32)).all()
+    for name in ("clay", "ink"):
+        assert np.ptp(glass_colors(tinted, STYLES[name])) == 0

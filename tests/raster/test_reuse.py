@@ -1,0 +1,138 @@
+"""A fixed camera takes the set over from one drawing of it: never another byte, and less to do."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+from raster_scenes import box, looking, room, scene, sphere, still
+
+from runtime.mesh import MATERIALS
+from runtime.raster import empty as module
+from runtime.raster.renderer import Renderer
+from runtime.raster.types import STYLES, Frames, RenderScene, Views
+
+EYE, TARGET = (2.6, -1.8, 1.5), (2.0, 1.8, 1.0)
+
+
+def walking(steps: int) -> NDArray[np.float32]:
+    moments = still(2, steps)
+    moments[:, 0, 1, 3] = np.linspace(0, 0.5, steps)
+    moments[:, 1, 0, 3] = np.linspace(0, -0.4, steps)
+    return moments
+
+
+def fixed(steps: int) -> Views:
+    return looking([EYE] * steps, [TARGET] * steps, moments=list(range(steps)))
+
+
+def drawn(drawer: Renderer, views: Views, size: tuple[int, int], ids: bool = False) -> Frames:
+    return drawer.render(walking(len(views.moment)), views, size, ids=ids)
+
+
+def anew(monkeypatch: pytest.MonkeyPatch, drawer: Renderer, views: Views, size: tuple[int, int]) -> Frames:
+    with monkeypatch.context() as patch:
+        patch.setattr(module, "REUSED", 10**9)
+        return drawn(drawer, views, size, ids=True)
+
+
+def redrawn(drawer: Renderer, views: int, size: tuple[int, int]) -> float:
+    """Share of the runs of pixels that were shaded, of the views drawn last."""
+    level = drawer._buffers["level"][: views * size[1] * size[0] // 16]
+    return float((level == 3).mean())
+
+
+@pytest.mark.parametrize("style", ["board", "clay", "ink"])
+@pytest.mark.parametrize("size", [(128, 72), (320, 180)])
+def test_the_same_bytes_as_drawn_anew(
+    monkeypatch: pytest.MonkeyPatch, style: str, size: tuple[int, int]
+) -> None:
+    drawer = Renderer("cpu", STYLES[style])
+    drawer.load(room())
+    views = fixed(5)
+    expected = anew(monkeypatch, drawer, views, size)
+    got = drawn(drawer, views, size)
+    assert (got.color == expected.color).all()
+    assert redrawn(drawer, 5, size) < 0.85
+    with_ids = drawn(drawer, views, size, ids=True)
+    assert (with_ids.color == expected.color).all()
+    np.testing.assert_array_equal(with_ids.ids, expected.ids)
+
+
+def test_less_is_redrawn_where_little_moves(monkeypatch: pytest.MonkeyPatch) -> None:
+    ball = sphere((0, 0, 0.3), (0.3, 0.3, 0.3), (0.8, 0.2, 0.2))
+    floor = box((-6, -6, -0.1), (6, 6, 0), (0.7, 0.7, 0.7), "wood")
+    drawer = Renderer("cpu")
+    drawer.load(scene([floor], [ball, sphere((0.8, 0, 0.2), (0.2, 0.2, 0.2), (0.2, 0.2, 0.8))]))
+    size = (640, 360)
+    views = looking([(0, -6, 2.5)] * 4, [(0, 0, 0.3)] * 4, moments=[0, 1, 2, 3])
+    expected = anew(monkeypatch, drawer, views, size)
+    assert (drawn(drawer, views, size).color == expected.color).all()
+    assert redrawn(drawer, 4, size) < 0.15
+
+
+def test_walls_and_cameras_are_kept_apart(monkeypatch: pytest.MonkeyPatch) -> None:
+    content = room()
+    wall = np.where(content.static_object == 1, 0, content.static_wall).astype(np.int32)
+    drawer = Renderer("cpu")
+    drawer.load(RenderScene(**{**vars(content), "static_wall": wall, "wall_count": 1}))
+    eyes = [EYE, (1.0, -2.0, 1.2), EYE] * 4
+    views = looking(eyes, [TARGET] * 12, moments=list(range(12)), walls=1)
+    views.hidden[6:] = True
+    expected = anew(monkeypatch, drawer, views, (128, 72))
+    assert (drawn(drawer, views, (128, 72)).color == expected.color).all()
+    assert redrawn(drawer, 12, (128, 72)) < 0.95
+
+
+def test_a_set_is_kept_for_the_next_call_and_dropped_with_its_scene(monkeypatch: pytest.MonkeyPatch) -> None:
+    drawer = Renderer("cpu")
+    drawer.load(room())
+    views, size = fixed(4), (128, 72)
+    first = drawn(drawer, views, size)
+    with monkeypatch.context() as patch:
+        patch.setattr(drawer._visibility, "fill_empty", lambda *arguments: pytest.fail("drawn again"))
+        assert (drawn(drawer, views, size).color == first.color).all()
+    other = scene(
+        [box((0, 0, -0.1), (4.2, 3.6, 0), (0.2, 0.5, 0.3))],
+        [sphere((1, 1, 1), (0.2, 0.2, 0.2), (1, 0, 0))] * 2,
+    )
+    drawer.load(other)
+    expected = anew(monkeypatch, drawer, views, size)
+    assert (drawn(drawer, views, size).color == expected.color).all()
+
+
+def test_odd_widths_are_drawn_anew() -> None:
+    drawer = Renderer("cpu")
+    drawer.load(room())
+    together = drawn(drawer, fixed(3), (131, 77)).color
+    for k in range(3):
+        alone = looking([EYE], [TARGET], moments=[k])
+        assert (drawer.render(walking(3), alone, (131, 77)).color[0] == together[k]).all()
+
+
+def test_glass_is_taken_over_too_and_drawn_anew_where_it_moves(monkeypatch: pytest.MonkeyPatch) -> None:
+    clear = MATERIALS.index("glass")
+    things = [
+        sphere((0.6, 0, 0.5), (0.12, 0.12, 0.2), (0.7, 0.8, 0.9)),
+        sphere((0, 0, 0.3), (0.3,) * 3, (1, 0, 0)),
+    ]
+    things[0] = replace(things[0], materials=np.full(len(things[0].faces), clear, np.int32))
+    content = scene(
+        [
+            box((-6, -6, -0.1), (6, 6, 0), (0.7, 0.7, 0.7), "wood"),
+            box((-2, 1.0, 0.2), (2, 1.02, 1.6), (0.8, 0.9, 0.92), "glass"),
+            box((-6, 4.0, 0), (6, 4.1, 3), (0.8, 0.4, 0.3)),
+        ],
+        things,
+    )
+    drawer = Renderer("cpu")
+    drawer.load(content)
+    size = (640, 368)
+    views = looking([(0, -5, 1.2)] * 4, [(0, 0, 0.6)] * 4, moments=[0, 1, 2, 3])
+    expected = anew(monkeypatch, drawer, views, size)
+    assert (drawn(drawer, views, size).color == expected.color).all()
+    assert redrawn(drawer, 4, size) < 0.25
+    with_ids = drawn(drawer, views, size, ids=True)
+    assert (with_ids.color == expected.color).all()

@@ -1,0 +1,45 @@
+"""Slow pans are steady: what a surface shows in one frame it shows in the next."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from raster_scenes import looking, room, still
+
+from runtime.raster.renderer import Renderer
+from runtime.raster.types import STYLES, Style
+from vdsl.pipeline.steadiness import panned, steadiness
+
+NOBODY = np.zeros(0, np.bool_)
+
+
+# strokes of hatching are near black and two pixels wide: carried over by half pixels they blur, and
+# that counts as change
+@pytest.mark.parametrize(("style", "most"), [("board", 0.005), ("clay", 0.005), ("ink", 0.06)])
+def test_a_slow_pan_does_not_crawl(style: str, most: float) -> None:
+    drawer = Renderer("cpu", STYLES[style])
+    drawer.load(room())
+    views = looking([(2.6, -1.8, 1.5)], [(1.7, 1.8, 1.0)])
+    for degrees in (0.02, 0.125):  # a fifth of a pixel a frame, and three degrees a second
+        found = steadiness(drawer, still(2)[0], panned(views.camera, 4, degrees), NOBODY, (1280, 720))
+        assert found.worst < most, degrees
+
+
+def test_what_does_change_is_found() -> None:
+    # a patch of the middle frame is half as bright
+    drawer = Renderer("cpu", Style("bare", outline=False, tones=0, shadows=False, occlusion=False))
+    drawer.load(room())
+    views = looking([(2.6, -1.8, 1.5)], [(1.7, 1.8, 1.0)])
+    camera = panned(views.camera, 3, 0.1)
+    real = drawer.render
+
+    def flickering(*given, **more):  # type: ignore[no-untyped-def]
+        frames = real(*given, **more)
+        frames.color[1, 200:400, 200:600] //= 2
+        return frames
+
+    drawer.render = flickering  # type: ignore[method-assign]
+    found = steadiness(drawer, still(2)[0], camera, NOBODY, (1280, 720))
+    assert 0.05 < found.share < 0.15
+    assert found.changed[220:380, 220:580].mean() > 0.95
+    assert found.changed[450:].mean() < 0.005

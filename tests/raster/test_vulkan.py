@@ -1,0 +1,86 @@
+"""The Vulkan backend against the CPU's, on whatever Vulkan there is (in CI: Mesa's lavapipe).
+
+A process draws on one device, so each draws the same pictures in a process of its own.
+"""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from raster_scenes import box, looking, room, scene, sphere, still
+
+from runtime.raster.types import RenderScene, Style, Views
+
+HERE = Path(__file__).resolve()
+NO_DEVICE = 77  # exit status of a process that found none
+#: Widths that four divides and does not, and heights over no whole block.
+SIZES = ((160, 90), (61, 47))
+
+
+def through_the_lens() -> tuple[RenderScene, Views]:
+    """A floor under the eye and a wall that the near plane cuts."""
+    content = scene(
+        [box((-5, -5, -0.2), (5, 5, 0)), box((0.2, -5, 0), (0.4, 5, 3), (0.3, 0.5, 0.7))],
+        [sphere((-0.5, 2.0, 1.0), (0.3, 0.2, 0.5), (0.8, 0.2, 0.2), rings=8)],
+    )
+    return content, looking([(0.0, 0.0, 1.2)], [(0.3, 3.0, 1.0)], focal=18)
+
+
+def furnished() -> tuple[RenderScene, Views]:
+    """The tests' room, with shadows, patterns and people, in two moments."""
+    views = looking([(2.6, -1.8, 1.5), (0.5, 0.2, 1.6)], [(2.0, 1.8, 1.0)] * 2, moments=[0, 1])
+    return room(), views
+
+
+def draw_all(device: str, out: str) -> None:
+    """In a process of its own: draw every scene at every size into a file of arrays."""
+    from runtime.raster.device import DeviceError
+    from runtime.raster.renderer import Renderer
+
+    try:
+        drawer = Renderer(device, Style())
+    except DeviceError as error:
+        print(error, file=sys.stderr)
+        sys.exit(NO_DEVICE)
+    kept: dict[str, Any] = {}
+    for make in (through_the_lens, furnished):
+        content, views = make()
+        palettes = still(int(content.joints.max()) + 1, 2)
+        palettes[1, :, 1, 3] = 0.2
+        drawer.load(content)
+        for size in SIZES:
+            frames = drawer.render(palettes, views, size, ids=True)
+            kept[f"{make.__name__} {size} color"] = frames.color
+            kept[f"{make.__name__} {size} ids"] = frames.ids
+    np.savez(out, **kept)
+
+
+def drawn(device: str, folder: Path) -> dict[str, np.ndarray]:
+    """What ``device`` draws; skips the test where there is no such device."""
+    out = folder / f"{device}.npz"
+    code = f"import sys; sys.path[:0] = {[str(HERE.parents[2]), str(HERE.parent)]!r}\n"
+    code += f"from test_vulkan import draw_all; draw_all({device!r}, {str(out)!r})"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=300)
+    if done.returncode == NO_DEVICE and device != "cpu" and not os.environ.get("VDS_EXPECT_VULKAN"):
+        pytest.skip(f"no Vulkan here: {done.stderr.strip().splitlines()[-1]}")
+    assert done.returncode == 0, done.stderr
+    return dict(np.load(out))
+
+
+def test_vulkan_draws_what_the_cpu_draws(tmp_path: Path) -> None:
+    other = drawn("vulkan", tmp_path)
+    host = drawn("cpu", tmp_path)
+    assert set(host) == set(other)
+    for name, picture in host.items():
+        if name.endswith("ids"):
+            assert (picture >= 0).mean() > 0.5, name  # there is something to see
+            assert (picture == other[name]).mean() >= 0.999, name
+        else:
+            apart = np.abs(picture.astype(int) - other[name]).max(axis=-1)
+            assert (apart <= 2).mean() >= 0.999, name

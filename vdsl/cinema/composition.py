@@ -1,0 +1,160 @@
+"""How what is filmed lies in the frame: size, headroom, lead room, thirds, and whether heads are whole.
+
+One number a take, over the part of its time in which the subject is meant to be there: the window.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .framing import Array, stretch
+from .sizes import CORE, PAPER_RADIUS
+from .subject import Subject
+from .takes import Bools, Picture, Takes, key_sample, mean_of, within
+from .track import project
+from .vectors import length
+
+_HAIR, _CHEEK = 0.1, 0.02  # metres of a head to its side that hide, and of a face that is not to be hidden
+_HEAD = 0.11  # half a head's width and its hair, metres
+_NEARLY = 0.9  # share of a head in the frame that is as good as all of it
+
+
+def framing(
+    takes: Takes, subject: Subject, at: NDArray[np.int64], picture: Picture
+) -> tuple[dict[str, Array], Bools]:
+    """Measures of where the landmarks are in the picture, and which are inside it [P, F, K]."""
+    xy, window = picture.xy, takes.window
+    inside = within(xy, picture.depth, 0.0)
+    rows = np.arange(len(xy))
+    upper = np.array([picture.names.index(s.upper) for s in takes.sizes])
+    lower = np.array([picture.names.index(s.lower) for s in takes.sizes])
+    top = np.array([s.top for s in takes.sizes])
+    eyes = picture.of("eyes")
+    core = np.array([picture.names.index(CORE[s.name]) for s in takes.sizes])
+    heads = inside[:, :, picture.names.index("eyes")]
+    both = heads & inside[rows, :, core]
+    key = key_sample(takes, at)
+    depth = np.maximum(picture.depth[:, :, picture.names.index("pocket")], 0.01)
+    view = depth * takes.track.sensor[1] / takes.track.focal[:, at]
+    drift = np.abs(np.log(view / view[rows, key][:, None]))
+    error = np.zeros(len(xy))
+    if takes.paper:
+        asked = np.array([PAPER_RADIUS[s.name] for s in takes.sizes]) * subject.height
+        error = np.abs(np.log(view[rows, key] / asked))
+    crown, sole = xy[rows, :, upper, 1], xy[rows, :, lower, 1]
+    whole = np.array([s.lower == "feet" for s in takes.sizes])
+    return {
+        "in_frame": mean_of(both, window),
+        "size_error": error,
+        "size_drift": np.where(window, drift, 0.0).max(axis=1),
+        "headroom": np.clip(mean_of(crown, window), -1.0, 2.0),
+        "headroom_error": np.minimum(mean_of(np.abs(crown - top[:, None]), window), 2.0),
+        "head_cut": _beyond(-crown, window),
+        "head_cropped": _cropped(takes, picture),
+        "feet_cut": np.where(whole, _beyond(sole - 1.0, window), 0.0),
+        "thirds_error": np.minimum(mean_of(np.abs(eyes[..., 1] - 1 / 3), window), 2.0),
+        "lead_room": _lead(takes, subject, at, eyes[..., 0]),
+    }, inside
+
+
+def size_error(
+    takes: Takes,
+    points: Array,
+    names: list[str],
+    camera: Array,
+    axes: Array,
+    key: NDArray[np.int64],
+    at: NDArray[np.int64],
+) -> Array:
+    """|log| of what the size's stretch fills of the frame at the key sample, against its share: [P]."""
+    upper, lower = (
+        points[key, np.array([names.index(getattr(s, end)) for s in takes.sizes])]
+        for end in ("upper", "lower")
+    )
+    focal = takes.track.focal[np.arange(len(key)), at[key]]
+    filled = stretch(upper, lower, camera, axes, focal, takes.track.sensor)
+    share = np.array([s.share for s in takes.sizes])
+    return np.asarray(np.abs(np.log(np.maximum(filled, 1e-4) / share)))
+
+
+def _beyond(over: Array, window: Bools) -> Array:
+    """The most by which something is over a border of the frame while the window is open: [P, F] -> [P]."""
+    return np.clip(np.where(window, over, 0.0).max(axis=1), 0.0, 2.0)
+
+
+def _cropped(takes: Takes, picture: Picture) -> Array:
+    """0 where all of the head is in the frame or none, at the take's first frame and its last, 1 where half
+    of it is; 0 for sizes that cut the head. [P]"""
+    high = np.array((takes.track.sensor[0] / takes.track.sensor[1], 1.0))  # of the frame, in its heights
+    crown, chin = (picture.of(name)[:, (0, -1)] * high for name in ("crown", "chin"))
+    radius = np.maximum(length(crown - chin) / 2, 1e-6)[..., None]
+    middle = (crown + chin) / 2
+    out = np.clip((radius - middle) / (2 * radius), 0.0, 1.0)
+    out = out + np.clip((middle + radius - high) / (2 * radius), 0.0, 1.0)
+    inside = np.clip((1.0 - out), 0.0, 1.0).prod(axis=-1)
+    inside = np.where(picture.depth[:, (0, -1)].min(axis=-1) > 0.05, np.minimum(inside / _NEARLY, 1.0), 0.0)
+    whole = np.array([s.upper == "crown" for s in takes.sizes])
+    return np.where(whole, (4.0 * inside * (1.0 - inside)).max(axis=1), 0.0)
+
+
+def everybody_seen(
+    takes: Takes,
+    subject: Subject,
+    at: NDArray[np.int64],
+    camera: Array,
+    axes: Array,
+    seen_from: Callable[[Array], Bools],
+) -> Array:
+    """Whether all heads are in the frame and seen, or the near head at its side and off the face: a share of
+    the window, [P]."""
+    shoulder = takes.view == "ots" and subject.via is not None
+    heads = [subject.via] if shoulder and subject.via is not None else list(subject.heads.values())
+    if not heads:
+        return np.ones(len(camera))
+    points = np.stack([head[at] for head in heads], axis=1)
+    xy, depth = project(points[None], camera, axes, takes.track.focal[:, at], takes.track.sensor)
+    if not shoulder:
+        half = np.array(takes.track.sensor) / takes.track.focal[:, at][..., None]
+        seen = within(xy, depth, 0.03) & seen_from(points) & ~_behind_heads(xy * half[:, :, None], depth)
+        return _held(np.asarray(seen.all(axis=-1)), takes.window)
+    aside, high = np.abs(xy[..., 0, 0] - 0.5), xy[..., 0, 1]
+    nearer = (depth[..., 0] > 0.2) & (depth[..., 0] < 0.75 * length(camera - subject.landmarks["eyes"][at]))
+    face, away = project(
+        subject.landmarks["eyes"][at][None, :, None],
+        camera,
+        axes,
+        takes.track.focal[:, at],
+        takes.track.sensor,
+    )
+    wide = _HAIR / np.maximum(depth[..., 0], 0.1) + _CHEEK / np.maximum(away[..., 0], 0.1)
+    wide = wide * takes.track.focal[:, at] / takes.track.sensor[0]
+    nearer &= np.abs(xy[..., 0, 0] - face[..., 0, 0]) > wide
+    there = nearer & (aside > 0.16) & (aside < 0.62) & (high > -0.6) & (high < 0.75)
+    return _held(np.asarray(there), takes.window)
+
+
+def _behind_heads(xy: Array, depth: Array) -> Bools:
+    """Which heads are behind another one, or behind its shoulders: [P, F, K]. xy: [P, F, K, 2], metres aside
+    and down at a metre's distance; depth: [P, F, K]."""
+    wide = _HEAD / np.maximum(depth, 0.1)
+    aside = np.abs(xy[..., :, None, 0] - xy[..., None, :, 0])  # [P, F, of this head, by that one]
+    over = xy[..., None, :, 1] - xy[..., :, None, 1]
+    nearer = depth[..., None, :] < depth[..., :, None] - 0.1
+    covered = nearer & (aside < wide[..., None, :] + 0.5 * wide[..., :, None]) & (over < wide[..., None, :])
+    return np.asarray(covered.any(axis=-1))
+
+
+def _held(there: Bools, window: Bools) -> Array:
+    """Share of the window [P] in which something holds; 0 where it does not at the window's first frame or
+    its last, which are what cuts show."""
+    rows, last = np.arange(len(there)), window.shape[1] - 1 - window[:, ::-1].argmax(axis=1)
+    return np.where(there[rows, window.argmax(axis=1)] & there[rows, last], mean_of(there, window), 0.0)
+
+
+def _lead(takes: Takes, subject: Subject, at: NDArray[np.int64], x: Array) -> Array:
+    yaw = takes.track.rotation[:, at, 2]
+    sideways = subject.face[None, at, 0] * np.sin(yaw) - subject.face[None, at, 1] * np.cos(yaw)
+    return np.clip(mean_of(sideways * (1.0 - 2.0 * x), takes.window), -1.0, 1.0)

@@ -1,0 +1,78 @@
+"""Takes to be measured, and what all measures need of them: the frames looked at, the window, where the
+landmarks are in the picture.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import space
+from .framing import Array
+from .sizes import Size
+from .track import CameraTrack
+
+Bools = NDArray[np.bool_]
+
+SAMPLES = 10
+
+
+@dataclass(frozen=True, eq=False)
+class Takes:
+    """P takes to measure.
+
+    sizes: of every take; window: bool [P, F] on the sampled frames; key: [P] frame the size is asked at
+    paper: whether sizes are meant as the paper's distances rather than landmarks on lines
+    others: pillars (foot [T, 3], crown [T, 3], radius) of everybody else
+    ignore: object id whose boxes hide nothing (the thing filmed)
+    interest: [T, 3] each, other points one would like to see
+    view: one of :data:`vdsl.lang.ir.VIEWS`, or ""
+    near: the boxes near the cameras at the sampled frames, where somebody has looked already
+    """
+
+    track: CameraTrack
+    sizes: tuple[Size, ...]
+    window: Bools
+    key: NDArray[np.int64]
+    roll: float
+    paper: bool
+    others: tuple[tuple[Array, Array, float], ...]
+    ignore: int | None = None
+    interest: tuple[Array, ...] = ()
+    near: space.Nearby | None = None
+    view: str = ""
+
+
+def samples(frames: int) -> NDArray[np.int64]:
+    """Indices of the frames looked at."""
+    count = min(frames, SAMPLES)
+    return np.asarray((np.arange(count) * ((frames - 1) / max(count - 1, 1))).round().astype(np.int64))
+
+
+@dataclass(frozen=True, eq=False)
+class Picture:
+    """xy: [P, F, K, 2] picture coordinates of the landmarks; depth: [P, F, K]."""
+
+    names: list[str]
+    xy: Array
+    depth: Array
+
+    def of(self, name: str) -> Array:
+        return np.asarray(self.xy[:, :, self.names.index(name)])
+
+
+def mean_of(values: Array | Bools, window: Bools) -> Array:
+    """Mean over the window's frames: [P, F] -> [P]."""
+    return np.asarray((values * window).sum(axis=1) / np.maximum(window.sum(axis=1), 1))
+
+
+def key_sample(takes: Takes, at: NDArray[np.int64]) -> NDArray[np.int64]:
+    return np.asarray(np.abs(at[None] - takes.key[:, None]).argmin(axis=1))
+
+
+def within(xy: Array, depth: Array, margin: float) -> Bools:
+    """Which points are before the camera and inside the frame by so much of its size."""
+    x, y, far = xy[..., 0], xy[..., 1], 1.0 - margin
+    return np.asarray((depth > 0.05) & (x > margin) & (x < far) & (y > margin) & (y < far))

@@ -1,0 +1,52 @@
+"""``vdsc dataset``: film a training set for the discriminator."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from .compile import Device
+
+
+def dataset(
+    out: Annotated[Path, typer.Argument(help="Folder for the training set; one begun is gone on with.")],
+    clips: Annotated[int, typer.Option(min=0, help="Clips to film, half of them good.")] = 10_000,
+    seed: Annotated[int, typer.Option(min=0, help="Seed of the stories.")] = 0,
+    size: Annotated[int, typer.Option(min=32, max=512, help="Side of the pictures, in pixels.")] = 224,
+    positives: Annotated[
+        Path | None,
+        typer.Option(
+            help="Folder of real clips (mp4, mov), one shot a file, to add as good ones.", show_default="none"
+        ),
+    ] = None,
+    picks: Annotated[
+        list[Path] | None,
+        typer.Option(help="A storyboard whose chosen takes to add as good ones; may be given again."),
+    ] = None,
+    device: Annotated[Device, typer.Option(help="Where pictures are drawn.")] = Device.auto,
+) -> None:
+    """Film a training set of random stories, and add real clips or chosen takes to it.
+
+    Stopped and started again with the same folder and seed, it goes on where it was. Train on it with
+    `vdsc train OUT --data FOLDER`.
+    """
+    # Only now: --help must not wait for numpy and taichi.
+    from rich.console import Console
+
+    from ..pipeline.dataset import generate
+    from ..pipeline.realclips import add_films, add_picks
+    from .failures import failures_told
+    from .progress import Bars
+
+    console = Console(stderr=True)
+    with failures_told(out):
+        added = 0
+        if positives is not None:
+            added += add_films(out, positives, seed, console.print, size)
+        if picks:
+            added += add_picks(out, picks, seed, size)
+        with Bars(console) as bars:
+            filmed = generate(out, clips, seed, device.value, bars, size) if clips else 0
+    print(f"{out}: {filmed or added} clips" + (f", {added} of them added from films" if added else ""))

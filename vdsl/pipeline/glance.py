@@ -1,0 +1,117 @@
+"""Scores of a shot's proposals by two looks: a glance at all of them, and a full look at the best of those.
+
+Assumes a glance that puts proposals in nearly the order of a full look. Guarantees that whatever a shot keeps
+was looked at in full, that its score is the same however many others were, and the same order every time.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..propose.types import ProposalGrid
+from ..stage.assemble import StagedScene
+from .filming import SEGMENTS, Camerawork
+from .judging import Judge
+from .progress import StageClock
+
+#: Of a shot's eight frames, those of a glance: the second and the seventh.
+GLANCED = (1, 6)
+#: The share of the proposals that get a full look, and how many do at least.
+_SHARE, _LEAST = 0.25, 16
+#: Frames drawn and judged at a time: bounds memory, and lets progress be seen.
+_DRAWN_AT_ONCE = 128
+
+Scores = NDArray[np.float64]
+#: Scores [N] of proposals, given by their indices.
+Look = Callable[[Sequence[int]], Scores]
+
+
+def second_looks(count: int) -> int:
+    """How many of so many proposals get a full look for certain; all of a few."""
+    return min(count, max(_LEAST, math.ceil(_SHARE * count)))
+
+
+@dataclass(frozen=True, eq=False)
+class Screening:
+    """Shows a judge some frames of some proposals. judge: asked for when there is something to judge"""
+
+    staged: StagedScene
+    style: str
+    grid: ProposalGrid
+    camerawork: Camerawork
+    judge: Callable[[], Judge]
+    clock: StageClock
+
+    def scores(self, which: Sequence[int], frames: Sequence[int] = range(SEGMENTS)) -> Scores:
+        """Scores [N] of proposals by their frames, all eight or some of them."""
+        clock, judge = self.clock, self.judge()
+        clock.begin("draw", len(frames) * len(which), "frames")
+        clock.begin("rank", len(frames) * len(which), "frames")
+        parts, at_once = [], _DRAWN_AT_ONCE // len(frames)
+        for begin in range(0, len(which), at_once):
+            cameras = tuple(self.grid.cameras[i] for i in which[begin : begin + at_once])
+            amount = len(frames) * len(cameras)
+            with clock.spent("draw", amount):
+                pictures = self.camerawork.judge_frames(
+                    self.staged, self.style, self.grid.story, cameras, which=frames
+                )
+            with clock.spent("rank", amount):
+                whole = len(frames) == SEGMENTS
+                parts.append(
+                    judge.scores(cameras, pictures) if whole else judge.glance(cameras, pictures, frames)
+                )
+        return np.concatenate(parts)
+
+
+class Scored:
+    """The scores of proposals, made as far as they are wanted.
+
+    glance: gives the scores [P] of all of them by a glance, between 0 and 1; asked once
+    look: gives those of a full look; known: such scores from before, by index
+    """
+
+    def __init__(self, glance: Callable[[], Scores], look: Look, known: Mapping[int, float]) -> None:
+        self._glance, self._look = glance, look
+        self.known = dict(known)
+
+    @classmethod
+    def full(cls, scores: Scores) -> Scored:
+        """Of proposals that need no second look."""
+        return cls(lambda: scores, lambda which: scores[list(which)], dict(enumerate(scores.tolist())))
+
+    @classmethod
+    def of(cls, screening: Screening) -> Scored:
+        """Of proposals nobody has looked at."""
+        count = len(screening.grid.cameras)
+        if second_looks(count) == count:
+            return cls(lambda: np.zeros(count), screening.scores, {})
+        return cls(lambda: screening.scores(range(count), GLANCED), screening.scores, {})
+
+    @cached_property
+    def first(self) -> Scores:
+        """[P], by the glance."""
+        return self._glance()
+
+    def look(self, which: Sequence[int]) -> bool:
+        """Look at these in full; whether there was any among them that had only been glanced at."""
+        fresh = sorted(i for i in set(which) if i not in self.known)
+        if fresh:
+            self.known |= dict(zip(fresh, self._look(fresh).tolist(), strict=True))
+        return bool(fresh)
+
+    def look_at_best(self) -> None:
+        """Look in full at those that a glance puts first."""
+        self.look(np.argsort(-self.first, kind="stable")[: second_looks(len(self.first))].tolist())
+
+    @property
+    def order(self) -> Scores:
+        """[P], to choose by: the scores of full looks, and behind them the rest by the glance."""
+        out = self.first + (min(self.known.values(), default=0.0) - 1.0)
+        out[list(self.known)] = list(self.known.values())
+        return out

@@ -1,0 +1,157 @@
+"""Designer's picks hidden among proposals: how high a ranker puts them, and how often it agrees.
+
+The paper's test of its section 4.4 on stories for testing only: of every shot all proposals are drawn and
+scored, and one of them is the designer's pick. Assumes stories nobody trained on. Scores are kept shot by
+shot, so that a stopped evaluation goes on; frames are not.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from time import perf_counter
+from typing import Any
+
+import numpy as np
+
+from ranker.evaluate import agreement, hidden
+from ranker.infer import Ranker
+from runtime.raster.types import LOOK_VERSION
+
+from ..cinema.score import geometry_score, parts
+from ..lang.ir import Shot
+from ..propose.types import ProposalGrid
+from .casting import TEST_EVERY, Scene, Troupe
+from .designer import picks
+from .filming import Camerawork
+from .judging import prior
+from .progress import Progress, Silence
+
+_A_SHOT = 100  # proposals
+_SEED = 1_000_003  # added to the data's seed: other stories than its own
+_AT_ONCE = 16
+
+
+@dataclass(frozen=True)
+class Scored:
+    """The proposals of a shot [P]: what the ranker says of each, and which the designer picked.
+
+    margins: log odds from the pictures alone; priors: what compile adds for the geometry
+    geometry: parts of the geometry score, by name
+    """
+
+    shot: str
+    picked: int
+    margins: list[float]
+    priors: list[float]
+    geometry: dict[str, list[float]]
+
+
+def hide(
+    ranker: Ranker,
+    kept: Path,
+    proposals: int,
+    seed: int = 0,
+    device: str = "auto",
+    progress: Progress | None = None,
+) -> list[Scored]:
+    """Score at least so many proposals of shots of test stories, going on with what ``kept`` holds.
+
+    kept: a file of JSON lines, of these weights alone. Raises OSError.
+    """
+    watcher = progress or Silence()
+    head = {"seed": seed, "look": LOOK_VERSION}
+    done, numbers = _read(kept, head)
+    count = sum(len(s.margins) for s in done)
+    watcher.begin("proposals", max(0, proposals - count), "proposals")
+    troupe, camerawork = Troupe(seed + _SEED), Camerawork(device)
+    kept.parent.mkdir(parents=True, exist_ok=True)
+    with kept.open("a", encoding="utf-8") as file:
+        if not kept.stat().st_size:
+            file.write(json.dumps(head) + "\n")
+        for name, scene, shot, grid in _shots(troupe):
+            if count >= proposals:
+                break
+            if name in numbers:
+                continue
+            best = picks(grid.cameras, 1)
+            if not best:
+                continue
+            begun = perf_counter()
+            scored = _scored(name, scene, shot, grid, best[0], ranker, camerawork)
+            file.write(json.dumps(asdict(scored)) + "\n")
+            file.flush()
+            done.append(scored)
+            count += len(scored.margins)
+            watcher.advance("proposals", len(scored.margins), perf_counter() - begun)
+    return done
+
+
+def told(shots: list[Scored]) -> dict[str, Any]:
+    """``picks``, ``proposals``, how high the picks are among all, and agreement within each shot."""
+    if not shots:
+        return {"picks": 0, "proposals": 0, **hidden(np.zeros(0), np.zeros(0, bool)), "agreement": {}}
+    margins = np.concatenate([s.margins for s in shots])
+    picked = np.concatenate([np.arange(len(s.margins)) == s.picked for s in shots])
+    names = [s.shot for s in shots for _ in s.margins]
+    by = {"ranker": margins, "ranker with prior": margins + np.concatenate([s.priors for s in shots])}
+    for key in shots[0].geometry:
+        by[key] = np.concatenate([s.geometry[key] for s in shots])
+    return {
+        "picks": int(picked.sum()),
+        "proposals": len(margins),
+        **hidden(margins, picked),
+        "agreement": agreement(by, picked, names),
+    }
+
+
+def _shots(troupe: Troupe) -> Iterator[tuple[str, Scene, Shot, ProposalGrid]]:
+    number = TEST_EVERY - 1
+    while True:
+        for scene in troupe.scenes(number, _A_SHOT, "test"):
+            for shot, grid in zip(scene.shots, scene.grids, strict=True):
+                yield f"{number} {shot.id}", scene, shot, grid
+        number += TEST_EVERY
+
+
+def _scored(
+    name: str,
+    scene: Scene,
+    shot: Shot,
+    grid: ProposalGrid,
+    picked: int,
+    ranker: Ranker,
+    camerawork: Camerawork,
+) -> Scored:
+    margins: list[float] = []
+    size = ranker.config.size
+    for begin in range(0, len(grid.cameras), _AT_ONCE):
+        cameras = grid.cameras[begin : begin + _AT_ONCE]
+        frames = camerawork.judge_frames(scene.staged, shot.style, grid.story, cameras, (size, size))
+        margins += [round(float(m), 5) for m in ranker.score(frames).margin]
+    measures = {k: np.array([c.measures[k] for c in grid.cameras]) for k in grid.cameras[0].measures}
+    alone = {k: [round(float(v), 4) for v in values] for k, values in parts(measures).items()}
+    alone["geometry score"] = [round(geometry_score(c.measures), 4) for c in grid.cameras]
+    priors = [round(float(prior(c.measures)), 4) for c in grid.cameras]
+    return Scored(name, picked, margins, priors, alone)
+
+
+def _read(kept: Path, head: dict[str, Any]) -> tuple[list[Scored], set[str]]:
+    """What an earlier run scored; a file of something else is begun anew, one that was cut off mended."""
+    try:
+        lines = kept.read_text("utf-8").split("\n")
+        if json.loads(lines[0]) != head:
+            raise ValueError
+    except FileNotFoundError:
+        return [], set()
+    except ValueError:
+        kept.unlink()
+        return [], set()
+    done: list[Scored] = []
+    for line in lines[1:-1]:  # the last is empty, or was not written to its end
+        done.append(Scored(**json.loads(line)))
+    if lines[-1]:
+        kept.write_text("\n".join(lines[:-1]) + "\n", "utf-8")
+    return done, {s.shot for s in done}

@@ -1,0 +1,176 @@
+"""Clips out of films: real ones as positives, and the takes writers chose of their builds.
+
+Assumes one shot a file. Guarantees eight frames as the discriminator sees a proposal: the middle of eight
+equal parts, squeezed into a square as its pictures are. What cannot be read is told, not skipped in
+silence.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import av
+import cv2
+import numpy as np
+from av.error import FFmpegError
+from numpy.typing import NDArray
+
+from ranker.data import ShardWriter
+from ranker.errors import RankerError
+from runtime.video import VideoError
+
+from ..emit.video import take_paths
+from ..lang.words import CAMERA_WORDS
+from .dataset import made
+from .filming import SEGMENTS, segment_frames
+from .labels import WORDS, classes
+from .lock import lock_path, read_lock
+
+FILMS = (".mp4", ".mov", ".m4v")
+#: Every so many folders (or scripts), one is for testing: those whose digest says so.
+_TEST_SHARE = 0.15
+
+
+@dataclass(frozen=True, eq=False)
+class Preference:
+    """A shot whose take somebody chose. frames: uint8 [T, 8, S, S, 3] of its takes; chosen: which of them
+
+    words: movement, size and angle of every take
+    """
+
+    shot: str
+    frames: NDArray[np.uint8]
+    chosen: int
+    words: tuple[tuple[str, str, str], ...]
+
+
+def clip_of(path: Path, size: int = 224) -> NDArray[np.uint8]:
+    """A film's eight frames, uint8 [8, size, size, 3]. Raises :class:`runtime.video.VideoError`."""
+    kept: list[NDArray[np.uint8]] = []
+    try:
+        # Twice through the file: what it says of its length is not always so.
+        count = sum(1 for _ in _pictures(path))
+        if count < SEGMENTS:
+            raise VideoError(f"{path}: a clip needs at least {SEGMENTS} frames, this has {count}")
+        wanted = set(segment_frames(count).tolist())
+        for number, picture in enumerate(_pictures(path)):
+            if number in wanted:
+                kept.append(
+                    cv2.resize(picture.to_ndarray(format="rgb24"), (size, size), interpolation=cv2.INTER_AREA)
+                )
+    except (FFmpegError, OSError, IndexError) as error:
+        raise error if isinstance(error, VideoError) else VideoError(f"{path}: {error}") from error
+    return np.stack(kept).astype(np.uint8)
+
+
+def _pictures(path: Path) -> Iterator[av.VideoFrame]:
+    with av.open(str(path)) as film:
+        stream = film.streams.video[0]
+        stream.thread_type = "AUTO"
+        yield from film.decode(stream)
+
+
+def add_films(
+    folder: Path, films: Path, seed: int, tell: Callable[[str], None] = lambda text: None, size: int = 224
+) -> int:
+    """Add real clips below a folder as positives to a training set; returns how many were added.
+
+    Camera words in a file's name are its labels (``pan-left_medium_eye-level_012.mp4``); what is not said is
+    not known. Clips of one folder stay on one side of the split. Those added before are not added again.
+    """
+    paths = sorted(p for p in films.rglob("*") if p.suffix.lower() in FILMS)
+    if not paths:
+        raise RankerError(f"{films}: there are no clips ({', '.join(FILMS)})")
+    with ShardWriter(folder, WORDS, (size, size), SEGMENTS, shard=64, made=made(seed)) as writer:
+        known = {label.about.get("file") for label in writer.labels}
+        added = 0
+        for path in paths:
+            name = path.relative_to(films).as_posix()
+            if name in known:
+                continue
+            try:
+                pictures = clip_of(path, size)
+            except VideoError as error:
+                tell(f"left out: {error}")
+                continue
+            group = f"film {path.parent.relative_to(films).as_posix()}"
+            about = {"kind": "film", "file": name}
+            writer.add(pictures, True, *words_of(path.stem), group, 0.0, _side(group), about)
+            added += 1
+        return added
+
+
+def words_of(name: str) -> tuple[str | None, str | None, str | None]:
+    """The classes that a file's name says, None for what it does not say."""
+    said: dict[str, str] = {}
+    for part in name.lower().replace(" ", "_").split("_"):
+        meaning = CAMERA_WORDS.get(part)
+        if meaning is not None and meaning.slot not in said:
+            said[meaning.slot] = meaning.words[0]
+    found = classes(said.get("movement", "+"), said.get("scale", ""), said.get("angle", ""))
+    return found
+
+
+def add_picks(folder: Path, scripts: list[Path], seed: int, size: int = 224) -> int:
+    """Add the takes chosen for scripts, out of their builds, as positives; returns how many were added."""
+    with ShardWriter(folder, WORDS, (size, size), SEGMENTS, shard=64, made=made(seed)) as writer:
+        known = {label.about.get("file") for label in writer.labels}
+        added = 0
+        for script in scripts:
+            group = f"script {script.name}"
+            for liked in preferences(script, size):
+                name = f"{script.name} {liked.shot}"
+                if name in known:
+                    continue
+                about = {"kind": "picked", "file": name}
+                labels = classes(*liked.words[liked.chosen])
+                writer.add(liked.frames[liked.chosen], True, *labels, group, 0.0, _side(group), about)
+                added += 1
+        return added
+
+
+def preferences(script: Path, size: int = 224, build: Path | None = None) -> list[Preference]:
+    """The shots of a script that somebody chose a take for, with all takes of its build.
+
+    build: its folder, None for ``build/NAME`` where one is, beside the script or here. Raises
+    :class:`RankerError` where there are choices but no build, ScriptError for a lock that does not read.
+    """
+    lock = read_lock(lock_path(script))
+    if not lock.choices:
+        return []
+    folder = build or _build_of(script)
+    try:
+        document = json.loads((folder / "storyboard.json").read_text("utf-8"))
+        shots: dict[str, dict[str, Any]] = {s["id"]: s for s in document["shots"]}
+        found = [_preference(folder, shots[c.shot], c.key, size) for c in lock.choices if c.shot in shots]
+    except FileNotFoundError as error:
+        raise RankerError(f"{folder}: has no films of {script}; compile it first") from error
+    except (ValueError, KeyError, TypeError) as error:
+        raise RankerError(f"{folder}: is no build of this version; compile {script} again") from error
+    return [f for f in found if f is not None]
+
+
+def _preference(folder: Path, entry: dict[str, Any], key: str, size: int) -> Preference | None:
+    takes = entry["takes"]
+    keys = [take["key"] for take in takes]
+    if key not in keys or len(takes) < 2:
+        return None
+    frames = np.stack([clip_of(take_paths(folder, entry["id"], take["rank"])[0], size) for take in takes])
+    words = tuple((str(t["movement"]), str(t["scale"]), str(t["angle"])) for t in takes)
+    return Preference(entry["id"], frames, keys.index(key), words)
+
+
+def _build_of(script: Path) -> Path:
+    here, beside = Path("build") / script.stem, script.parent / "build" / script.stem
+    return here if (here / "storyboard.json").exists() or not beside.exists() else beside
+
+
+def _side(group: str) -> str:
+    """Which side of the split a group is on: by its name alone."""
+    share = int.from_bytes(hashlib.sha256(f"vds test {group}".encode()).digest()[:4], "big") / 2**32
+    return "test" if share < _TEST_SHARE else "train"

@@ -1,0 +1,162 @@
+"""Candidates that are shot: their tracks, and what was drawn for each."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..cinema.moves import FLOOR_CLEARANCE, RACK, SIGN, Draw, families, family, of_camera
+from ..cinema.track import CameraTrack
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Shooting:
+    """P candidates of one story, shot.
+
+    order: [P] which of the given rows each is; movements, scales, angles: words, P each
+    key: frame the framing is of; draw: what was drawn, all [P], second:
+    the same for the second of two movements at once; lifted: radians off the asked angle to
+    stay above the floor; relative: azimuth from the subject's heading, radians
+    floor: height of the subject's floor, above which cameras stay; view: as in the shot
+    """
+
+    rig: str
+    track: CameraTrack
+    order: NDArray[np.int64]
+    movements: tuple[str, ...]
+    scales: tuple[str, ...]
+    angles: tuple[str, ...]
+    key: NDArray[np.int64]
+    draw: Draw
+    second: Draw
+    lifted: Array
+    relative: Array
+    height: Array
+    floor: float = 0.0
+    view: str = ""
+
+    @property
+    def strata(self) -> NDArray[np.int64]:
+        """λ and end of each candidate as one small number, for variety."""
+        lam = np.unique(self.draw.lam, return_inverse=True)[1]
+        return np.asarray(2 * lam + self.draw.key)
+
+    def only(self, rows: NDArray[np.int64]) -> Shooting:
+        """Some of the candidates (rows in rising order)."""
+        if len(rows) == len(self.movements):
+            return self
+        t = self.track
+        return Shooting(
+            self.rig,
+            t.only(rows),
+            self.order[rows],
+            tuple(self.movements[p] for p in rows),
+            tuple(self.scales[p] for p in rows),
+            tuple(self.angles[p] for p in rows),
+            self.key[rows],
+            Draw(*(getattr(self.draw, f.name)[rows] for f in fields(Draw))),
+            Draw(*(getattr(self.second, f.name)[rows] for f in fields(Draw))),
+            self.lifted[rows],
+            self.relative[rows],
+            self.height[rows],
+            self.floor,
+            self.view,
+        )
+
+    def window(self, at: NDArray[np.int64], frames: int) -> NDArray[np.bool_]:
+        """bool [P, F]: sampled frames at which the subject is meant to be in the picture."""
+        time = at / max(frames - 1, 1)
+        out = np.ones((len(self.movements), len(at)), bool)
+        for p, movement in enumerate(self.movements):
+            kinds = families(movement)
+            if kinds & {"whip-pan"}:
+                out[p] = time >= 0.65
+            elif kinds & {"tilt", "pan"}:
+                out[p] = time >= 0.75 if self.draw.on[p] else time <= 0.25
+                out[p, -1 if self.draw.on[p] else 0] = True
+            elif kinds & {"dolly", "pedestal"} and self.draw.travel[p] > 0 and self.draw.before[p] != 0.5:
+                out[p] = time >= 0.4 if self.draw.before[p] == 1.0 else time <= 0.6
+        return out
+
+    def params(self, p: int, roll: float) -> dict[str, float | str]:
+        """The drawn variables of one candidate, as docs/cinema.md lists them."""
+        movement = of_camera(self.movements[p])
+        d, kind = self.draw, family(movement)
+        out: dict[str, float | str] = {
+            "r": float(d.r[p]),
+            "theta": float(d.theta[p]),
+            "phi": float(d.phi[p]),
+            "azimuth": float(self.relative[p]),
+            "focal": float(d.focal[p]),
+            "lambda": float(d.lam[p]),
+            "roll": roll,
+            "floor_clearance": FLOOR_CLEARANCE,
+            "reference": "end" if d.key[p] else "start",
+        }
+        if self.rig == "paper":
+            out["reference_height"] = float(self.height[p])
+        else:
+            out |= {f"offset_{a}": float(d.offset[p, k]) for k, a in enumerate("xyz")}
+        first, _, too = movement.partition("+")
+        out |= _moved(first, d, p, "")
+        if too:
+            out |= {"lambda_2": float(self.second.lam[p])} | _moved(too, self.second, p, "_2")
+        if kind in ("dolly", "pedestal"):
+            for word, t in (("start", 0), ("end", -1)):
+                out |= {f"{word}_{a}": float(self.track.position[p, t, k]) for k, a in enumerate("xyz")}
+        if RACK in self.movements[p].split("+"):
+            out["lambda_focus"] = float(self.second.lam[p])
+        low = float(self.track.position[p, :, 2].min()) - self.floor
+        if self.lifted[p] > 1e-9 or low <= FLOOR_CLEARANCE + 1e-9:
+            out["lifted"] = float(self.lifted[p])
+        return out
+
+
+def _moved(movement: str, d: Draw, p: int, suffix: str) -> dict[str, float | str]:
+    """What was drawn for one movement."""
+    kind = family(movement)
+    out: dict[str, float | str] = {}
+    if kind in ("push", "pull", "zoom", "dolly-zoom"):
+        out["mu"] = float(d.mu[p])
+    if kind in ("push", "pull", "zoom") and d.rise[p]:
+        out["rise"] = float(d.rise[p])
+    if kind in ("tilt", "pan", "arc", "crane", "roll", "whip-pan"):
+        out["turn"] = float(SIGN[movement] * d.turn[p])
+    if kind in ("tilt", "pan", "roll"):
+        out["ending"] = "on" if d.on[p] else "off"
+    return {name + suffix: value for name, value in out.items()}
+
+
+def joined(parts: list[Shooting]) -> Shooting:
+    """Several as one."""
+
+    def cat(name: str) -> NDArray[np.float64]:
+        return np.concatenate([getattr(p, name) for p in parts])
+
+    track = CameraTrack(
+        np.concatenate([p.track.position for p in parts]),
+        np.concatenate([p.track.rotation for p in parts]),
+        np.concatenate([p.track.focal for p in parts]),
+        np.concatenate([p.track.look_at for p in parts]),
+        parts[0].track.sensor,
+    )
+    draw = Draw(*(np.concatenate([getattr(p.draw, f.name) for p in parts]) for f in fields(Draw)))
+    second = Draw(*(np.concatenate([getattr(p.second, f.name) for p in parts]) for f in fields(Draw)))
+    return Shooting(
+        parts[0].rig,
+        track,
+        cat("order").astype(np.int64),
+        tuple(w for p in parts for w in p.movements),
+        tuple(w for p in parts for w in p.scales),
+        tuple(w for p in parts for w in p.angles),
+        cat("key").astype(np.int64),
+        draw,
+        second,
+        cat("lifted"),
+        cat("relative"),
+        cat("height"),
+    )

@@ -1,0 +1,187 @@
+"""Whom and what cameras are about: the subject of a shot, what is sharp, and who else is in the way."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from runtime.body.skeleton import JOINT, Skeleton
+from runtime.nav import level_at
+from runtime.world import Spot, World, WorldObject
+
+from ..cinema import rig_cinema, rig_paper
+from ..cinema.subject import Subject, group, person, place, thing
+from ..lang.ir import Shot, Target
+from ..library import Catalog
+from .focusing import Foci
+from .types import STILL, StoryProposal
+
+Array = NDArray[np.float64]
+
+_MARGIN = 0.22  # radius of a person in somebody else's way, metres
+_STANDS = 1.65  # metres: what a spot in a room is as tall as
+_NECK = 0.09  # of one over whose shoulder one looks
+
+
+@dataclass(frozen=True, eq=False)
+class Filming:
+    """What cameras need to know of a scene.
+
+    skeletons: of everyone in it; fps: frames a second; rig: cinema or paper; aspect: picture width/height
+    room: path of the room an establishing shot shows, () for the whole set
+    catalog: where the actions of story lines are defined; cameras alone need none
+    """
+
+    world: World
+    skeletons: Mapping[str, Skeleton]
+    fps: float
+    seed: int
+    rig: str = "cinema"
+    aspect: float = 16 / 9
+    room: tuple[str, ...] = ()
+    catalog: Catalog | None = None
+
+    @property
+    def sensor(self) -> tuple[float, float]:
+        return (rig_paper if self.rig == "paper" else rig_cinema).sensor(self.aspect)
+
+
+def subject_of(shot: Shot, story: StoryProposal, filming: Filming) -> Subject:
+    """Whom or what the shot's cameras are about."""
+    if shot.view in ("two-shot", "group"):
+        everybody = _together(shot, story, filming)
+        return everybody if everybody is not None else _focused(shot, story, filming)
+    subject = _focused(shot, story, filming)
+    owner = shot.whose[0] if shot.view and shot.whose else ""
+    if owner not in story.performances or owner == subject.name:
+        return subject
+    return replace(subject, via=_person(owner, story, filming).landmarks["eyes"])
+
+
+def _person(name: str, story: StoryProposal, filming: Filming) -> Subject:
+    acted = story.performances[name]
+    return person(name, filming.skeletons[name], acted.world_from_joint, acted.position, acted.heading)
+
+
+def _together(shot: Shot, story: StoryProposal, filming: Filming) -> Subject | None:
+    """Two people, or all, as one subject: those of the line first, then who is nearest to them."""
+    first = [name for name in shot.whose if name in story.performances]
+    if shot.focus is not None and shot.focus.path[-1] in story.performances:
+        first.insert(0, shot.focus.path[-1])
+    people = {name: _person(name, story, filming) for name in story.performances}
+    if not people:
+        return None
+    middle = people[(first or list(people))[0]].position.mean(axis=0)
+    away = {n: float(np.linalg.norm(p.position.mean(axis=0) - middle)) for n, p in people.items()}
+    by_distance = sorted(people, key=lambda name: away[name])
+    order = list(dict.fromkeys((*first, *by_distance)))
+    return group([people[name] for name in (order[:2] if shot.view == "two-shot" else order)])
+
+
+def _focused(shot: Shot, story: StoryProposal, filming: Filming) -> Subject:
+    focus = shot.focus
+    if focus is None or _establishes(shot, story):
+        return _room_subject(filming, story.frames)
+    if focus.kind == "character" and focus.path[-1] in story.performances:
+        return _person(focus.path[-1], story, filming)
+    item = find_object(filming.world, focus)
+    if item is None:
+        return _room_subject(filming, story.frames)
+    spot = item.spot(focus.path[-1]) if focus.kind == "spot" and item.kind in ("room", "area") else None
+    return _thing_subject(item, story, filming.world) if spot is None else _spot_subject(spot, story.frames)
+
+
+def _establishes(shot: Shot, story: StoryProposal) -> bool:
+    """Whether a shot in which nobody acts shows the place: it is wide, and nobody was named as its focus."""
+    named = shot.focus is not None and shot.focus.span.text == shot.focus.written
+    return story.variant == STILL and not named and set(shot.scales) <= {"extreme-wide", "wide", "full"}
+
+
+def find_object(world: World, target: Target) -> WorldObject | None:
+    """The object a target names, or the one its spot belongs to: the longest path that matches."""
+    paths = {item.path: item for item in world.objects}
+    for end in range(len(target.path), 0, -1):
+        if target.path[:end] in paths:
+            return paths[target.path[:end]]
+    return None
+
+
+def _room_subject(filming: Filming, frames: int) -> Subject:
+    item = next((o for o in filming.world.objects if o.path == filming.room and filming.room), None)
+    if item is not None:
+        return place(item.path[-1], item.low, item.high, frames)
+    floors = np.array(filming.world.floors or ((-2.0, -2.0, 2.0, 2.0),))
+    low, high = floors[:, :2].min(axis=0), floors[:, 2:].max(axis=0)
+    return place(filming.world.name, (*low.tolist(), 0.0), (*high.tolist(), 2.6), frames)
+
+
+def _spot_subject(spot: Spot, frames: int) -> Subject:
+    """A place in a room, framed as if somebody stood there."""
+    x, y, z = spot.position
+    low, high = (
+        np.tile(corner, (frames, 1)) for corner in ((x - 0.3, y - 0.3, z), (x + 0.3, y + 0.3, z + _STANDS))
+    )
+    facing = 0.0 if spot.facing is None else spot.facing
+    return thing(spot.name, low, high, facing, z)
+
+
+def _thing_subject(item: WorldObject, story: StoryProposal, world: World) -> Subject:
+    name = item.path[-1]
+    low, high = (np.tile(corner, (story.frames, 1)) for corner in (item.low, item.high))
+    if item.kind in ("room", "area"):
+        return replace(place(name, item.low, item.high, story.frames), name=name)
+    moved = story.props.get(item.id)
+    if moved is not None:
+        shift = moved[:, :3, 3].astype(float) - item.world_from_object[:3, 3]
+        low, high = low + shift, high + shift
+    stand = item.spot("stand")
+    facing = 0.0 if stand is None or stand.facing is None else stand.facing + np.pi
+    x, y, _ = item.centre
+    floor = world.storeys[level_at(world, (x, y, item.low[2]))].height
+    return thing(name, low, high, facing, floor)
+
+
+def foci_of(shot: Shot, subject: Subject, story: StoryProposal, filming: Filming) -> Foci:
+    """What is to be sharp: the eyes of a person, the middle of a thing, of several all alike."""
+    end = None if shot.focus_to is None else _point(shot.focus_to, story, filming)
+    if subject.heads:
+        named = subject.heads.get(shot.focus.path[-1]) if shot.focus is not None else None
+        heads = tuple(subject.heads.values())
+        return Foci(heads if end is None else (heads[0] if named is None else named,), end)
+    if shot.focus is not None and shot.focus.kind == "spot" and subject.kind != "place":
+        return Foci((_point(shot.focus, story, filming),), end)
+    return Foci((subject.landmarks["eyes"],), end)
+
+
+def _point(target: Target, story: StoryProposal, filming: Filming) -> Array:
+    """Where somebody's eyes, a spot or the middle of a thing is at every frame, [T, 3]."""
+    if target.kind == "character" and target.path[-1] in story.performances:
+        return _person(target.path[-1], story, filming).landmarks["eyes"]
+    item = find_object(filming.world, target)
+    if item is None:
+        return _room_subject(filming, story.frames).landmarks["eyes"]
+    spot = item.spot(target.path[-1]) if target.kind == "spot" else None
+    if spot is None:
+        return _thing_subject(item, story, filming.world).landmarks["eyes"]
+    moved, local = story.props.get(item.id), np.array([*spot.position, 1.0])
+    if moved is None:
+        return np.tile(local[:3], (story.frames, 1))
+    own = np.linalg.inv(item.world_from_object) @ local
+    return np.asarray((moved.astype(float) @ own)[:, :3])
+
+
+def pillars_of(shot: Shot, story: StoryProposal, without: set[str]) -> list[tuple[Array, Array, float]]:
+    """Everybody else as pillars that hide what is behind them: foot and crown [T, 3], and radius."""
+    out = []
+    for name, acted in story.performances.items():
+        if name not in without:
+            joints = acted.world_from_joint
+            crown = joints[:, JOINT["head"], :3, 3].astype(float) + np.array((0.0, 0.0, 0.12))
+            foot = joints[:, JOINT["hips"], :3, 3].astype(float)
+            foot[:, 2] = acted.position[:, 2]
+            shoulder = shot.view == "ots" and name in shot.whose
+            out.append((foot, crown, _NECK if shoulder else _MARGIN))
+    return out

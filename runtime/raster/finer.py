@@ -109,6 +109,7 @@ def _blended(
             np.add.at(dense, (row, joints[end, k]), weights[end, k] / 2)
     best = np.argsort(-dense, axis=1, kind="stable")[:, :4]
     chosen = np.take_along_axis(dense, best, 1)
+    best = np.where(chosen > 0, best, best[:, :1])  # of fewer than four joints, no other is named
     return best.astype(np.int32), chosen / chosen.sum(1, keepdims=True)
 
 

@@ -15,7 +15,7 @@ from .device import Backend
 from .looks import glass_colors, packed_light, paper_level, paper_tones
 from .panes import Glass, divided
 from .prepare import Prepared, check, prepare
-from .types import LOOSE, RenderScene, Style
+from .types import RenderScene, Style, people_of
 
 SET_SHADOW = 2048  # texels along the set's shadow map
 SET_TEXEL = 0.006  # metres, finest
@@ -89,8 +89,7 @@ class Loaded:
 def loaded(scene: RenderScene, style: Style, backend: Backend, shading: Any) -> Loaded:
     """Prepare and upload ``scene``; shading: the kernels of the style. Raises ValueError."""
     check(scene)
-    fitting = scene.fitting if scene.fitting is not None else np.zeros(0, np.int32)
-    people = max(LOOSE - int(fitting.min(initial=LOOSE)), 0)
+    people = people_of(scene)
     opaque, glass = divided(scene)
     if glass is not None:
         glass = replace(glass, color=glass_colors(glass.color, style))

@@ -81,6 +81,12 @@ class RenderScene:
     levels: tuple[float, ...] = (0.0,)
 
 
+def people_of(scene: RenderScene) -> int:
+    """How many people of a scene may be left out of a view."""
+    fitting = scene.fitting if scene.fitting is not None else np.zeros(0, np.int32)
+    return max(LOOSE - int(fitting.min(initial=LOOSE)), 0)
+
+
 @dataclass(frozen=True, eq=False)
 class Camera:
     """Poses of N cameras, one per view.

@@ -51,6 +51,7 @@ def test_levels_share_vertices_and_keep_small_shells() -> None:
         radius = np.linalg.norm(corners / np.array([0.3, 0.25, 0.5]), axis=-1)
         np.testing.assert_allclose(radius, 1, atol=1e-4)  # on the surface, and of the right shell
     assert made.person.tolist() == [0]
+    assert made.scene.joints.max() == plain.joints.max()  # or a palette would be read beyond its end
 
 
 def test_farther_is_coarser_and_close_is_finest() -> None:

@@ -12,6 +12,7 @@ import sys
 import tempfile
 from collections.abc import Callable, Iterator
 from dataclasses import asdict, dataclass, replace
+from functools import partial
 from pathlib import Path
 from statistics import median
 from time import perf_counter, process_time
@@ -30,6 +31,7 @@ from ..propose.story import propose
 from ..propose.types import CameraProposal, StoryProposal
 from .acts import Act, stage_acts
 from .filming import Camerawork, not_drawn, story_palettes
+from .llvmpipe import LlvmpipeDrawer, NoOpenGLError
 from .script import load_storyboard
 from .steadiness import panned, steadiness
 
@@ -163,6 +165,10 @@ def _ours(drawer: Renderer, case: Case, size: tuple[int, int]) -> Turn:
     return lambda: len(drawer.render(case.palettes, case.views, size).color)
 
 
+def _theirs(drawer: LlvmpipeDrawer, case: Case, size: tuple[int, int]) -> int:
+    return sum(1 for _ in drawer.sheets(case.views, size))
+
+
 def _one_by_one(drawer: Renderer, case: Case, size: tuple[int, int]) -> Turn:
     camera, none = case.views.camera, np.zeros(1, np.int32)
     singles = []
@@ -177,13 +183,11 @@ def _against_opengl(case: Case, device: str, seconds: float) -> tuple[list[Row],
     """Plain smooth shading at 720p, and at 224 x 224 one by one and in batches."""
     drawer = Renderer(device, STYLES["plain"])
     drawer.load(case.scene)
-    rival: Any = None
+    rival: LlvmpipeDrawer | None = None
     try:
-        from .llvmpipe import LlvmpipeDrawer
-
         rival = LlvmpipeDrawer(case.scene, STYLES["plain"], case.palettes)
         name = rival.name
-    except Exception as error:  # whatever moderngl or a driver says; the rest can be measured
+    except NoOpenGLError as error:  # the rest can be measured
         name = f"not measured ({error})"
     rows = []
     large, small = case.only(_LARGE_FRAMES), case.only(_SMALL_FRAMES)
@@ -194,7 +198,7 @@ def _against_opengl(case: Case, device: str, seconds: float) -> tuple[list[Row],
     ):
         turns = {"ours": (_ours if batch else _one_by_one)(drawer, some, size)}
         if rival is not None:
-            turns["theirs"] = lambda v=some.views, s=size: sum(1 for _ in rival.sheets(v, s))  # type: ignore[misc]
+            turns["theirs"] = partial(_theirs, rival, some, size)
         found = in_turns(turns, seconds)
         ours, theirs = found["ours"], found.get("theirs")
         rows.append(Row(key, what, "frames/s", *ours, ours[0] / theirs[0] if theirs else None))

@@ -1,8 +1,9 @@
 """The same pictures drawn by OpenGL on the processor (Mesa's llvmpipe), to measure ours against.
 
 Needs moderngl and Mesa's EGL; nothing else of VDS does. Assumes the look `plain`: smooth shading from sun and
-sky and nothing else; panes and lamps are drawn like any surface. What moves is skinned beforehand and
-lies in OpenGL's memory before the clock starts, as does the set.
+sky and nothing else. What is left out of a view (walls, clear glass, all but one level of detail of each
+body) is what the renderer leaves out. What moves is skinned beforehand and lies in OpenGL's memory before
+the clock starts, as does the set.
 """
 
 from __future__ import annotations
@@ -13,12 +14,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from runtime.mesh import MATERIALS
 from runtime.raster.film import EXPOSURE, KNEE, to_linear, unexposed
+from runtime.raster.panes import divided
 from runtime.raster.prepare import CLOSED, SHIFT, Prepared, prepare
-from runtime.raster.types import RenderScene, Style, Views
-from runtime.raster.views import pack_views
+from runtime.raster.types import RenderScene, Style, Views, people_of
+from runtime.raster.views import left_out, pack_views, with_other_levels
 
 NEAR, FAR = 0.03, 500.0
+PANE, LAMP = (0.10, 0.12, 0.13), (0.2, 0.2, 0.2)  # what both shine with beside their colour
 
 _LIGHT = """
 #version 330
@@ -32,8 +36,9 @@ vec3 film(vec3 light) {
 """.replace("EXPOSURE", str(EXPOSURE)).replace("KNEE", str(KNEE))
 
 _SHADED = """
-vec3 shaded(vec3 normal, vec3 base) {
-    return film(base * (mix(ground, sky, normal.z * 0.5 + 0.5) + sun_color * max(dot(normal, sun), 0.0)));
+vec3 shaded(vec3 normal, vec4 base) {
+    vec3 light = mix(ground, sky, normal.z * 0.5 + 0.5) + sun_color * max(dot(normal, sun), 0.0);
+    return film(base.rgb * mix(vec3(1.0), light, base.a));
 }
 """
 
@@ -44,9 +49,10 @@ _SURFACES = {
         """
 #version 330
 uniform mat4 clip;
-in vec3 position, normal, color;
+in vec3 position, normal;
+in vec4 color;
 out vec3 n;
-flat out vec3 base;
+flat out vec4 base;
 void main() {
     gl_Position = clip * vec4(position, 1.0);
     n = normal;
@@ -57,7 +63,7 @@ void main() {
         + _SHADED
         + """
 in vec3 n;
-flat in vec3 base;
+flat in vec4 base;
 out vec4 picture;
 void main() { picture = vec4(shaded(normalize(gl_FrontFacing ? n : -n), base), 1.0); }
 """,
@@ -68,7 +74,8 @@ void main() { picture = vec4(shaded(normalize(gl_FrontFacing ? n : -n), base), 1
         + """
 uniform mat4 clip;
 uniform vec3 eye;
-in vec3 position, normal, color;
+in vec3 position, normal;
+in vec4 color;
 out vec3 paint;
 void main() {
     gl_Position = clip * vec4(position, 1.0);
@@ -105,29 +112,39 @@ void main() {
 """
 
 
+class NoOpenGLError(Exception):
+    """There is no OpenGL here; the message says what is missing."""
+
+
 class LlvmpipeDrawer:
     """One scene and some moments of it, drawn by OpenGL. shading: by ``pixel`` or by ``vertex``
 
-    Raises ImportError without moderngl, and what moderngl raises where there is no EGL.
+    Raises NoOpenGLError without moderngl or EGL.
     """
 
     def __init__(
         self, scene: RenderScene, style: Style, palettes: NDArray[np.float32], shading: str = "vertex"
     ) -> None:
-        import moderngl
+        try:
+            import moderngl
 
-        self._gl: Any = moderngl
-        self.context = self._gl.create_context(standalone=True, backend="egl")
+            self._gl: Any = moderngl
+            self.context = self._gl.create_context(standalone=True, backend="egl")
+        except Exception as error:  # without EGL, moderngl raises what it likes
+            raise NoOpenGLError(str(error)) from error
         self.name = str(self.context.info["GL_RENDERER"])
         self._surface: Any = self.context.program(*_SURFACES[shading])
         self._back: Any = self.context.program(_BACK_VERTEX, _LIGHT + _BACK)
         self._backdrop = self.context.vertex_array(self._back, [])
+        scene, _ = divided(scene)
         prepared = prepare(scene, style)
+        self._detail, self._palettes = prepared.detail, palettes
+        self._walls, self._people = scene.wall_count, people_of(scene)
         self._light(scene)
         faces = len(prepared.faces)
         of_set = np.arange(prepared.static_faces)
         self._set = self._parts(prepared, of_set, [(prepared.vertices, prepared.normals)], 0)
-        moments = [_skinned(scene, prepared, palette) for palette in palettes]
+        moments = [_skinned(prepared, palette) for palette in palettes]
         self._moving = self._parts(
             prepared, np.arange(prepared.static_faces, faces), moments, len(prepared.vertices)
         )
@@ -160,7 +177,7 @@ class LlvmpipeDrawer:
         if not len(faces):
             return [[] for _ in moments]
         corners = prepared.faces[faces] - first_vertex
-        colors, shade = np.unique(prepared.color[faces], axis=0, return_inverse=True)
+        colors, shade = np.unique(_bases(prepared)[faces], axis=0, return_inverse=True)
         pairs = np.stack([corners.reshape(-1), np.repeat(shade.reshape(-1), 3)], axis=1)
         vertices, index = np.unique(pairs, axis=0, return_inverse=True)
         index = index.reshape(-1, 3).astype(np.int32)
@@ -175,7 +192,7 @@ class LlvmpipeDrawer:
         for position, normal in moments:
             both = np.concatenate([position[vertices[:, 0]], normal[vertices[:, 0]]], axis=1)
             shape = self.context.buffer(both.astype(np.float32).tobytes())
-            content = [(shape, "3f 3f", "position", "normal"), (tint, "3f", "color")]
+            content = [(shape, "3f 3f", "position", "normal"), (tint, "4f", "color")]
             out.append(
                 [
                     (c, w, self.context.vertex_array(self._surface, content, index_buffer=i))
@@ -202,6 +219,7 @@ class LlvmpipeDrawer:
         width, height = size
         count = len(views.moment)
         packed = pack_views(views.camera, count, width, height)
+        hidden = self._hidden(views, packed)
         clips, corners = _clips(packed), _corners(packed)
         columns = int(np.ceil(np.sqrt(together)))
         whole = (columns * width, -(-together // columns) * height)
@@ -214,9 +232,18 @@ class LlvmpipeDrawer:
                 for k in range(begin, min(begin + together, count)):
                     column, row = (k - begin) % columns, (k - begin) // columns
                     target.viewport = (column * width, row * height, width, height)
-                    self._one(clips[k], corners[k], packed[k], int(views.moment[k]), views.hidden[k])
+                    self._one(clips[k], corners[k], packed[k], int(views.moment[k]), hidden[k])
                 target.read_into(sheet, components=4, viewport=(0, 0, *whole))
                 yield sheet
+
+    def _hidden(self, views: Views, packed: NDArray[np.float32]) -> NDArray[np.int32]:
+        """What is left out of each view, as ``Prepared.info`` counts walls, int32 [N, W + ...]."""
+        moment = np.asarray(views.moment, np.int32)
+        level = views.detail
+        if level is None:
+            level = self._detail.chosen(self._palettes, moment, packed)
+        hidden = left_out(views, self._walls, self._people)
+        return with_other_levels(hidden, self._detail, level, self._walls)
 
     def _target(self, size: tuple[int, int]) -> Any:
         if size not in self._targets:
@@ -230,14 +257,14 @@ class LlvmpipeDrawer:
         corner: NDArray[np.float32],
         view: NDArray[np.float32],
         moment: int,
-        hidden: NDArray[np.bool_],
+        hidden: NDArray[np.int32],
     ) -> None:
         gl, context = self._gl, self.context
         self._surface["clip"].write(clip)
         if "eye" in self._surface:
             self._surface["eye"].value = tuple(float(v) for v in view[0:3])
         for cull, wall, array in self._set[0] + self._moving[moment]:
-            if wall >= 0 and wall < len(hidden) and hidden[wall]:
+            if wall >= 0 and hidden[wall]:
                 continue
             context.enable_only(gl.DEPTH_TEST | gl.CULL_FACE if cull else gl.DEPTH_TEST)
             array.render()
@@ -248,10 +275,24 @@ class LlvmpipeDrawer:
         self._backdrop.render(vertices=3)
 
 
+def _bases(prepared: Prepared) -> NDArray[np.float32]:
+    """What light falls on, float32 [F, 4]: linear colour, and 0 where a pane or a lamp of the set shines."""
+    base = np.ones((len(prepared.faces), 4), np.float32)
+    base[:, :3] = prepared.color
+    material = prepared.info[:, 1] & ((1 << SHIFT) - 1)
+    material[prepared.static_faces :] = MATERIALS.index("plain")
+    for name, gain, offset in (("glass", 1.5, PANE), ("glow", 2.0, LAMP)):
+        shines = material == MATERIALS.index(name)
+        base[shines, :3] = prepared.color[shines] * gain + np.array(offset)
+        base[shines, 3] = 0.0
+    return base
+
+
 def _skinned(
-    scene: RenderScene, prepared: Prepared, palette: NDArray[np.float32]
+    prepared: Prepared, palette: NDArray[np.float32]
 ) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
-    """Positions and normals of what moves, float32 [K, 3] each."""
+    """Positions and normals of what moves, in all levels of detail, float32 [K, 3] each."""
+    scene = prepared.detail.scene
     blend = np.einsum("vk,vkij->vij", scene.weights, palette[scene.joints])
     position = np.einsum("vij,vj->vi", blend[..., :3], prepared.rest) + blend[..., 3]
     normal = np.einsum("vij,vj->vi", blend[..., :3], prepared.rest_normals)

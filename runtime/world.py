@@ -183,6 +183,7 @@ class Light:
     sun: unit vector towards the key light; sun_color: its radiance; shadow: 0 none .. 1 black
     sky, ground: hemispheric ambient from above and below
     backdrop: (horizon, zenith) colours behind everything, sRGB 0..1
+    lamps: how far what glows is turned up and lights its surroundings: 0 is off, 1 lamps at night
     """
 
     sun: tuple[float, float, float]
@@ -190,6 +191,7 @@ class Light:
     sky: tuple[float, float, float]
     ground: tuple[float, float, float]
     backdrop: tuple[tuple[float, float, float], tuple[float, float, float]]
+    lamps: float = 0.0
 
 
 @dataclass(frozen=True, eq=False)

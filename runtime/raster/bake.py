@@ -26,9 +26,9 @@ SHELTER = 0.27  # most of the ambient light that a set keeps off
 
 @dataclass(frozen=True, eq=False)
 class Volume:
-    """How much of the ambient light the set keeps off, from the blurred area of its surfaces.
+    """Something known of the air around a set.
 
-    values: 0..SHELTER, float32 [X, Y, Z]; low: position of value [0, 0, 0], metres; cell: spacing, metres
+    values: float32 [X, Y, Z]; low: position of value [0, 0, 0], metres; cell: spacing, metres
     """
 
     values: NDArray[np.float32]
@@ -68,8 +68,8 @@ def stage_bounds(mesh: Mesh, casters: NDArray[np.int32]) -> tuple[NDArray[np.flo
     return points.min(axis=0), points.max(axis=0)
 
 
-def occlusion_volume(mesh: Mesh, casters: NDArray[np.int32]) -> Volume:
-    """The occlusion volume of a static mesh."""
+def density_volume(mesh: Mesh, casters: NDArray[np.int32]) -> Volume:
+    """How much opaque surface of a static mesh there is, square metres in a cubic metre."""
     if not len(mesh.faces):
         return Volume(np.zeros((2, 2, 2), np.float32), np.zeros(3), 1.0)
     solid = ~np.isin(mesh.materials, [MATERIALS.index("glass"), MATERIALS.index("glow")])
@@ -90,11 +90,17 @@ def occlusion_volume(mesh: Mesh, casters: NDArray[np.int32]) -> Volume:
         share = np.prod(np.where(np.array(corner) == 1, part, 1 - part), axis=1)
         index = np.ravel_multi_index(tuple((base + corner).T), tuple(shape))
         values += np.bincount(index, weights=share * areas, minlength=len(values))
+    return Volume((values.reshape(shape) / cell**3).astype(np.float32), low, cell)
+
+
+def occlusion_volume(density: Volume) -> Volume:
+    """How much of the ambient light a set keeps off, 0..SHELTER, from the blurred area of its surfaces."""
+    cell = density.cell
     reach = max(REACH, 0.9 * cell)
-    blurred = gaussian_filter(values.reshape(shape) / cell**3, reach / cell, truncate=2.5)
+    blurred = gaussian_filter(density.values.astype(np.float64), reach / cell, truncate=2.5)
     near = blurred * np.sqrt(2 * np.pi) * reach  # one plane gives 1 on it
     kept_off = SHELTER * (1.0 - np.exp(-1.3 * np.maximum(near - 0.38, 0.0)))
-    return Volume(kept_off.astype(np.float32), low, cell)
+    return Volume(kept_off.astype(np.float32), density.low, cell)
 
 
 def _surface_points(

@@ -10,8 +10,9 @@ from typing import Any
 
 import numpy as np
 
-from .bake import light_basis
+from .bake import light_basis, occlusion_volume
 from .device import Backend
+from .lamps import lamp_volume
 from .looks import glass_colors, packed_light, paper_level, paper_tones
 from .panes import Glass, divided
 from .prepare import Prepared, check, prepare
@@ -63,9 +64,10 @@ class Loaded:
     """A scene on the device.
 
     scene: its flat arrays; arrays: those of them that kernels read, by name; glass: what is clear, None
-    without; shadow: the set's map; sheet, chart: what shading needs of each triangle of the set; columns,
-    rows: of the floor's cells; walls, people: how many can be left out; palette: matrices that a moment
-    needs; paper: brightness of the paper for hatching
+    without; shadow: the set's map; sheet, chart: what shading needs of each triangle of the set; lamps: light
+    of its lamps (``lamps.py``); cells: shape of the occlusion volume; columns, rows: of the
+    floor's cells; walls, people: how many can be left out; palette: matrices that a moment needs; paper:
+    brightness of the paper for hatching
     """
 
     scene: Prepared
@@ -74,6 +76,8 @@ class Loaded:
     shadow: ShadowMap
     sheet: Any
     chart: Chart
+    lamps: Any
+    cells: tuple[int, int, int]
     columns: int
     rows: int
     walls: int
@@ -109,9 +113,12 @@ def loaded(scene: RenderScene, style: Style, backend: Backend, shading: Any) -> 
         sheet,
     )
     chart = _chart(prepared, arrays, shadow, sheet, style, backend, shading)
+    lamps = lamp_volume(
+        opaque.static, opaque.static_object, scene.levels, scene.light.lamps, style, prepared.density, backend
+    )
     palette = int(opaque.joints.max()) + 1 if len(opaque.joints) else 0
     paper = paper_level(opaque.light)
-    surfaces, extent = (shadow, sheet, chart), (columns, rows)
+    surfaces, extent = (shadow, sheet, chart, lamps, prepared.density.values.shape), (columns, rows)
     return Loaded(prepared, arrays, glass, *surfaces, *extent, opaque.wall_count, people, palette, paper)
 
 
@@ -142,7 +149,7 @@ def _chart(
 
 
 def _uploaded(prepared: Prepared, scene: RenderScene, style: Style, backend: Backend) -> dict[str, Any]:
-    up, volume = backend.upload, prepared.volume
+    up, volume = backend.upload, occlusion_volume(prepared.density)
     arrays = {name: up(getattr(prepared, name)) for name in UPLOADED}
     arrays["joints"] = up(prepared.detail.scene.joints.astype(np.int32))
     arrays["weights"] = up(prepared.detail.scene.weights.astype(np.float32))

@@ -15,7 +15,7 @@ from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 
 from ..mesh import MATERIALS, Mesh
-from .bake import Volume, key_casters, occlusion_volume, stage_bounds
+from .bake import Volume, density_volume, key_casters, stage_bounds
 from .detail import COUNT, Levels, with_levels
 from .film import to_linear
 from .looks import surface_colors
@@ -44,8 +44,8 @@ class Prepared:
     one_color: int32 [S], 1 where all faces of a surface have one colour
     moving_surface: index of the first skinned surface; static_faces: number of static triangles
     set_casters, casters: int32, triangles that throw shadows, static and skinned; area: float32 [K], square
-    metres a skinned vertex stands for; volume: occlusion of the set; stage: corners of
-    what stands in it; levels: heights of its floors; detail: the levels of bodies
+    metres a skinned vertex stands for; density: surface of the set in the air; stage: corners of what
+    stands in it; levels: heights of its floors; detail: the levels of bodies
     """
 
     vertices: NDArray[np.float32]
@@ -65,7 +65,7 @@ class Prepared:
     set_casters: NDArray[np.int32]
     casters: NDArray[np.int32]
     area: NDArray[np.float32]
-    volume: Volume
+    density: Volume
     stage: tuple[NDArray[np.float64], NDArray[np.float64]]
     levels: tuple[float, ...]
     detail: Levels
@@ -241,7 +241,7 @@ def prepare(scene: RenderScene, style: Style) -> Prepared:
         set_casters=set_casters,
         casters=(_casters(skinned, fitting, casting[moving_order]) + len(order)).astype(np.int32),
         area=touching,
-        volume=occlusion_volume(static, set_casters),
+        density=density_volume(static, set_casters),
         stage=stage_bounds(static, set_casters),
         levels=scene.levels,
         detail=detail,

@@ -8,6 +8,7 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -15,6 +16,7 @@ import numpy as np
 import pytest
 from raster_scenes import box, looking, room, scene, sphere, still
 
+from runtime.mesh import join
 from runtime.raster.types import RenderScene, Style, Views
 
 HERE = Path(__file__).resolve()
@@ -38,6 +40,20 @@ def furnished() -> tuple[RenderScene, Views]:
     return room(), views
 
 
+def by_lamplight() -> tuple[RenderScene, Views]:
+    """The furnished room with a lamp in it that is on."""
+    content, views = furnished()
+    bulb = box((1.5, 1.4, 1.3), (1.6, 1.5, 1.4), (1.0, 0.9, 0.7), "glow")
+    lit = replace(
+        content,
+        static=join([content.static, bulb]),
+        static_object=np.concatenate([content.static_object, np.full(12, 90, np.int32)]),
+        static_wall=np.concatenate([content.static_wall, np.full(12, -1, np.int32)]),
+        light=replace(content.light, lamps=1.0),
+    )
+    return lit, views
+
+
 def draw_all(device: str, out: str) -> None:
     """In a process of its own: draw every scene at every size into a file of arrays."""
     from runtime.raster.device import DeviceError
@@ -49,7 +65,7 @@ def draw_all(device: str, out: str) -> None:
         print(error, file=sys.stderr)
         sys.exit(NO_DEVICE)
     kept: dict[str, Any] = {}
-    for make in (through_the_lens, furnished):
+    for make in (through_the_lens, furnished, by_lamplight):
         content, views = make()
         palettes = still(int(content.joints.max()) + 1, 2)
         palettes[1, :, 1, 3] = 0.2

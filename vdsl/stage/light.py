@@ -21,6 +21,7 @@ Colour = tuple[float, float, float]
 class _Hour:
     """elevation, azimuth: of the key, degrees; backdrop: horizon and zenith
     glass, glass_share: what window panes show, and how much of it
+    lamps: how far what glows is turned up; by day, and in the open, it does not show
     """
 
     elevation: float
@@ -31,46 +32,50 @@ class _Hour:
     backdrop: tuple[Colour, Colour]
     glass: Colour
     glass_share: float
+    lamps: float = 0.0
 
 
 _OUTDOORS = {
     "dawn": _Hour(24, 70, (1.06, 0.94, 0.76), (0.71, 0.78, 0.88), (0.56, 0.55, 0.54),
-                  ((0.98, 0.925, 0.86), (0.74, 0.85, 0.94)), (1.0, 0.90, 0.80), 0.75),
+                  ((0.98, 0.925, 0.86), (0.74, 0.85, 0.94)), (1.0, 0.90, 0.80), 0.75, 0.35),
     "day": _Hour(50, 240, (1.02, 0.97, 0.87), (0.76, 0.80, 0.85), (0.60, 0.58, 0.54),
                  ((0.93, 0.95, 0.955), (0.72, 0.84, 0.93)), (0.90, 0.95, 0.97), 0.0),
     "dusk": _Hour(22, 205, (1.08, 0.86, 0.60), (0.66, 0.71, 0.82), (0.54, 0.54, 0.55),
-                  ((0.96, 0.86, 0.76), (0.62, 0.69, 0.83)), (0.99, 0.78, 0.58), 0.8),
+                  ((0.96, 0.86, 0.76), (0.62, 0.69, 0.83)), (0.99, 0.78, 0.58), 0.8, 0.6),
     "night": _Hour(56, 215, (0.66, 0.69, 0.82), (0.42, 0.47, 0.62), (0.30, 0.32, 0.41),
-                   ((0.40, 0.46, 0.60), (0.18, 0.23, 0.38)), (0.24, 0.30, 0.46), 0.8),
+                   ((0.40, 0.46, 0.60), (0.18, 0.23, 0.38)), (0.24, 0.30, 0.46), 0.8, 1.0),
 }  # fmt: skip
 
 #: Indoors walls throw much of the light back: more fill, less key. At night the lamps are on. The key of
 #: late hours is warm and its fill cool, so that floor, walls and people keep their own colours.
 _INDOORS = {
     "dawn": _Hour(46, 70, (0.84, 0.70, 0.46), (0.97, 1.00, 1.07), (0.93, 0.90, 0.88),
-                  ((0.94, 0.93, 0.92), (0.94, 0.93, 0.92)), (1.0, 0.92, 0.82), 0.7),
+                  ((0.94, 0.93, 0.92), (0.94, 0.93, 0.92)), (1.0, 0.92, 0.82), 0.7, 0.35),
     "day": _Hour(52, 235, (0.70, 0.66, 0.56), (1.12, 1.11, 1.10), (1.04, 1.00, 0.94),
                  ((0.93, 0.93, 0.92), (0.93, 0.93, 0.92)), (0.90, 0.95, 0.97), 0.0),
     "dusk": _Hour(42, 200, (1.02, 0.73, 0.36), (0.74, 0.82, 0.97), (0.78, 0.75, 0.75),
-                  ((0.90, 0.88, 0.88), (0.90, 0.88, 0.88)), (0.98, 0.80, 0.62), 0.7),
+                  ((0.90, 0.88, 0.88), (0.90, 0.88, 0.88)), (0.98, 0.80, 0.62), 0.7, 0.7),
     "night": _Hour(64, 215, (1.04, 0.78, 0.46), (0.46, 0.51, 0.64), (0.44, 0.43, 0.46),
-                   ((0.34, 0.36, 0.45), (0.34, 0.36, 0.45)), (0.18, 0.23, 0.38), 0.92),
+                   ((0.34, 0.36, 0.45), (0.34, 0.36, 0.45)), (0.18, 0.23, 0.38), 0.92, 1.0),
 }  # fmt: skip
 
 
 #: Places where the hour does not matter: underground, in a ship, by a fire. Never below what a face needs.
 _LAMPS = {
     "lamps": _Hour(60, 235, (0.62, 0.58, 0.50), (1.02, 1.01, 0.98), (0.92, 0.89, 0.84),
-                   ((0.86, 0.86, 0.84), (0.86, 0.86, 0.84)), (0.90, 0.95, 0.97), 0.0),
+                   ((0.86, 0.86, 0.84), (0.86, 0.86, 0.84)), (0.90, 0.95, 0.97), 0.0, 0.4),
     "cool": _Hour(58, 235, (0.52, 0.64, 0.76), (0.80, 0.92, 1.04), (0.62, 0.70, 0.82),
-                  ((0.20, 0.25, 0.36), (0.12, 0.16, 0.26)), (0.24, 0.30, 0.46), 0.0),
+                  ((0.20, 0.25, 0.36), (0.12, 0.16, 0.26)), (0.24, 0.30, 0.46), 0.0, 0.8),
     "warm": _Hour(46, 250, (1.04, 0.75, 0.44), (0.79, 0.79, 0.84), (0.75, 0.68, 0.63),
-                  ((0.42, 0.36, 0.34), (0.34, 0.30, 0.31)), (1.0, 0.90, 0.80), 0.4),
+                  ((0.42, 0.36, 0.34), (0.34, 0.30, 0.31)), (1.0, 0.90, 0.80), 0.4, 0.9),
     "dim": _Hour(62, 225, (0.58, 0.57, 0.54), (0.66, 0.69, 0.73), (0.54, 0.55, 0.57),
-                 ((0.46, 0.48, 0.52), (0.40, 0.42, 0.47)), (0.80, 0.86, 0.90), 0.5),
+                 ((0.46, 0.48, 0.52), (0.40, 0.42, 0.47)), (0.80, 0.86, 0.90), 0.5, 0.9),
 }  # fmt: skip
 #: How far lamps are turned down at night.
 _LOWERED = 0.86
+#: How far key and fill step back before lamps that are turned all the way up.
+_BACK, _BACK_OUTSIDE = (0.45, 0.26), (0.5, 0.32)
+_BOUNCE: Colour = (0.15, 0.10, 0.04)
 
 #: A lit window seen from the street at night.
 LAMPLIGHT: Colour = (0.93, 0.80, 0.55)
@@ -83,16 +88,23 @@ def _hour(time: str, outdoor: bool, light: str) -> _Hour:
             lamps
             if time != "night"
             else replace(
-                lamps, sun=_lowered(lamps.sun), sky=_lowered(lamps.sky), ground=_lowered(lamps.ground)
+                lamps,
+                sun=_times(lamps.sun, _LOWERED),
+                sky=_times(lamps.sky, _LOWERED),
+                ground=_times(lamps.ground, _LOWERED),
             )
         )
     hours = _OUTDOORS if outdoor else _INDOORS
     return hours.get(time, hours["day"])
 
 
-def _lowered(radiance: Colour) -> Colour:
+def _times(radiance: Colour, share: float) -> Colour:
     r, g, b = radiance
-    return r * _LOWERED, g * _LOWERED, b * _LOWERED
+    return r * share, g * share, b * share
+
+
+def _plus(one: Colour, other: Colour) -> Colour:
+    return one[0] + other[0], one[1] + other[1], one[2] + other[2]
 
 
 def make_light(definition: SetDef, time: str, room: tuple[str, ...] = ()) -> Light:
@@ -107,7 +119,20 @@ def make_light(definition: SetDef, time: str, room: tuple[str, ...] = ()) -> Lig
         math.sin(azimuth) * math.cos(elevation),
         math.sin(elevation),
     )
-    return Light(sun, hour.sun, hour.sky, hour.ground, hour.backdrop)
+    return Light(sun, hour.sun, hour.sky, hour.ground, hour.backdrop, hour.lamps)
+
+
+def by_lamplight(light: Light, outdoor: bool) -> Light:
+    """The light of a set that has lamps, as far as they are turned up: the rest steps back before them, and
+    what walls throw back of them is warm."""
+    key, fill = (1.0 - back * light.lamps for back in (_BACK_OUTSIDE if outdoor else _BACK))
+    bounce = (0.0, 0.0, 0.0) if outdoor else _times(_BOUNCE, light.lamps)
+    return replace(
+        light,
+        sun_color=_times(light.sun_color, key),
+        sky=_plus(_times(light.sky, fill), bounce),
+        ground=_plus(_times(light.ground, fill), bounce),
+    )
 
 
 def window_azimuth(definition: SetDef, room: tuple[str, ...]) -> float | None:

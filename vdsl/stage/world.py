@@ -11,13 +11,14 @@ from dataclasses import replace
 
 import numpy as np
 
+from runtime.mesh import MATERIALS
 from runtime.world import Level, Solids, Wall, World, WorldObject
 
 from ..lang.definitions.files import FileSetDef
 from ..lang.definitions.set import PropCatalog, SetDef
 from .furnishing import Furnisher
 from .glazing import glazed
-from .light import make_light
+from .light import by_lamplight, make_light
 from .models import FileSet, file_set, on_ground
 from .pieces import Pieces
 from .shell import WallBuilder, add_flight, add_ground, add_platform, add_room
@@ -78,6 +79,10 @@ def _world(
 ) -> World:
     """The pieces as a world, its glass as it looks at this hour."""
     mesh, owners, mesh_wall = pieces.mesh()
+    mesh = glazed(mesh, owners, pieces.objects, definition, time)
+    light = make_light(definition, time, room)
+    if (mesh.materials == MATERIALS.index("glow")).any():
+        light = by_lamplight(light, definition.outdoor)
     solids, levels = pieces.solids(), pieces.levels()
     objects = [_with_clear_spots(o, solids, levels) for o in pieces.objects]
     for k, item in enumerate(objects):
@@ -86,14 +91,14 @@ def _world(
             objects[k] = replace(item, mesh=glazed(item.mesh, own, objects, definition, time))
     return World(
         name=definition.name,
-        mesh=glazed(mesh, owners, objects, definition, time),
+        mesh=mesh,
         mesh_object=owners,
         mesh_wall=mesh_wall,
         objects=tuple(objects),
         solids=solids,
         walls=tuple(Wall(s.point(s.start), s.point(s.end), s.height, s.base) for s in walls),
         floors=tuple(rect for level in levels for rect in level.floors),
-        light=make_light(definition, time, room),
+        light=light,
         outdoor=definition.outdoor,
         levels=levels,
         stairs=tuple(pieces.stairs),

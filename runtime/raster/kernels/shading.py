@@ -32,6 +32,7 @@ from .geometry import (
     u64s,
     vec3,
 )
+from .lamps import lamplight
 from .light import across, free_between, lit
 from .paint import NOTHING, RUN, SHADE, SHEET, backdrop, developed, exposed, pack_normal, packed, spread
 from .pattern import broad_pattern, glazed
@@ -82,6 +83,7 @@ def shading_kernels(style: Style) -> SimpleNamespace:
         nz: ti.i32,
         volume_low: f1,
         values: f1,
+        lamps: f1,
         floor: f1,
         columns: ti.i32,
         rows: ti.i32,
@@ -141,6 +143,7 @@ def shading_kernels(style: Style) -> SimpleNamespace:
             shade, shade_end = 1.0, 1.0
             tone, tone_end = 1.0, 1.0
             haze, haze_end = 0.0, 0.0
+            lamp, lamp_end = vec3(0), vec3(0)
             q_end = vec3(0)
             cell_end = ti.Vector([0, 0])
             kind, kind_end = MIXED, MIXED
@@ -261,6 +264,7 @@ def shading_kernels(style: Style) -> SimpleNamespace:
                                     around, corner, volume_low[3], nx, ny, nz, values
                                 )
                             out = base * (ambient + sun_color * (0.08 + 0.92 * key_light))
+                            out += base * lamplight(eye + ray * depth, nn, lamps)
                         out += (horizon - out) * (bounded((depth - 2.0) * 0.04, 0.0, 1.0) * 0.15)
                         if xx > before + 1 and ti.abs(key_light - key_before) > ABRUPT:
                             xx = before + 1
@@ -310,8 +314,8 @@ def shading_kernels(style: Style) -> SimpleNamespace:
                             facing = 0.0
                         material = flags & 255
                         n_l = across(basis, n0)
+                        base = row3(color, t)
                         if not flat:
-                            base = row3(color, t)
                             a, b, c = faces[t, 0], faces[t, 1], faces[t, 2]
                             p0 = row3(vertices, a)
                             q1 = row3(vertices, b) - p0
@@ -351,6 +355,7 @@ def shading_kernels(style: Style) -> SimpleNamespace:
                         begin_at = end_at
                         if joined:
                             shade, tone, haze, kind = shade_end, tone_end, haze_end, kind_end
+                            lamp = lamp_end
                         q_begin, cell = q_end, cell_end
                         for k in range(2):
                             if (k == 0 and not joined) or (k == 1 and end > x):
@@ -374,6 +379,14 @@ def shading_kernels(style: Style) -> SimpleNamespace:
                                         ground,
                                         deep,
                                     )
+                                nn = n0
+                                if not flat:
+                                    d = end_at - eye - p0
+                                    nn += n1 * bounded(d.dot(g1), 0.0, 1.0) + n2 * bounded(
+                                        d.dot(g2), 0.0, 1.0
+                                    )
+                                    nn *= 1.0 / ti.sqrt(ti.max(nn.norm_sqr(), 1e-12))
+                                lamp_end = base * lamplight(end_at, nn, lamps)
                                 tone_end = broad_pattern(material, end_at, n0, lattice)
                                 if ti.static(shadows):  # noqa: SIM102
                                     if facing > 0:
@@ -387,6 +400,7 @@ def shading_kernels(style: Style) -> SimpleNamespace:
                                     begin_at = end_at
                                     q_begin, cell = q_end, cell_end
                                     shade, tone, haze, kind = shade_end, tone_end, haze_end, kind_end
+                                    lamp = lamp_end
                         clear = True
                         key = facing
                         if ti.static(shadows):  # noqa: SIM102
@@ -418,11 +432,21 @@ def shading_kernels(style: Style) -> SimpleNamespace:
                         if flat and clear:
                             start = paint_end
                             if not (joined and painted):
-                                start = exposed(quiet(ambient, direct, key, shade, tone, haze, horizon), film)
+                                start = exposed(
+                                    quiet(ambient + lamp, direct, key, shade, tone, haze, horizon), film
+                                )
                             paint_end = start
                             if end > x:
                                 paint_end = exposed(
-                                    quiet(ambient, direct, key, shade_end, tone_end, haze_end, horizon),
+                                    quiet(
+                                        ambient + lamp_end,
+                                        direct,
+                                        key,
+                                        shade_end,
+                                        tone_end,
+                                        haze_end,
+                                        horizon,
+                                    ),
                                     film,
                                 )
                             spread(start, paint_end, end - x, mark, at, stop - x, picture, edge)
@@ -433,6 +457,7 @@ def shading_kernels(style: Style) -> SimpleNamespace:
                             step_shade = (shade_end - shade) * share
                             step_tone = (tone_end - tone) * share
                             step_haze = (haze_end - haze) * share
+                            step_lamp = (lamp_end - lamp) * share
                             xx = middle
                             before = middle
                             same = x
@@ -485,7 +510,7 @@ def shading_kernels(style: Style) -> SimpleNamespace:
                                         along = ti.cast(same - x, ti.f32)
                                         there = exposed(
                                             quiet(
-                                                ambient,
+                                                ambient + lamp + step_lamp * along,
                                                 direct,
                                                 key_before,
                                                 shade + step_shade * along,
@@ -508,7 +533,7 @@ def shading_kernels(style: Style) -> SimpleNamespace:
                                         along = ti.cast(xx - x, ti.f32)
                                         there = exposed(
                                             quiet(
-                                                ambient,
+                                                ambient + lamp + step_lamp * along,
                                                 direct,
                                                 key_light,
                                                 shade + step_shade * along,

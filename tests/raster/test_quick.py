@@ -1,6 +1,11 @@
-"""Taichi started quicker: the shortcuts are taken, and errors in kernels still say where."""
+"""Taichi started quicker: shortcuts are taken, kernels compile soon, and errors in them still say where."""
 
 from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
 
 import pytest
 
@@ -20,5 +25,27 @@ def test_an_error_in_a_kernel_names_its_place() -> None:
 
     with pytest.raises(ti.TaichiNameError, match="no_such_thing") as caught:
         wrong()
-    assert f'File "{__file__}", line 19, in wrong' in str(caught.value)
+    assert f'File "{__file__}", line 24, in wrong' in str(caught.value)
     assert "print(no_such_thing + 1)" in str(caught.value)
+
+
+COLD = """
+import time
+from vdsl.pipeline.bench_first import first_picture
+first_picture("cpu")
+print(time.process_time())
+"""
+
+
+def test_a_first_picture_with_nothing_kept_is_soon_there(tmp_path: Path) -> None:
+    done = subprocess.run(
+        [sys.executable, "-c", COLD],
+        env=os.environ | {"XDG_CACHE_HOME": str(tmp_path)},
+        cwd=Path(__file__).parents[2],
+        capture_output=True,
+        text=True,
+        timeout=300,
+        check=True,
+    )
+    # of processor time: 9 to 11 s; with Taichi's own optimisations it was 42
+    assert float(done.stdout.split()[-1]) < 25

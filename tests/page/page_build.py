@@ -10,7 +10,7 @@ from contextlib import contextmanager, suppress
 from dataclasses import replace
 from pathlib import Path
 
-import httpx
+import httpx2
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "emit"))
 
@@ -66,8 +66,8 @@ def serving_process(file: Path, build: Path, *more: str) -> Iterator[tuple[subpr
         assert process.stdout is not None
         address = process.stdout.readline().split(" ")[0].rstrip("/")
         for _ in range(20):  # it listens from the first, and answers once it has begun
-            with suppress(httpx.TransportError):
-                httpx.get(f"{address}/", timeout=30)
+            with suppress(httpx2.TransportError):
+                httpx2.get(f"{address}/", timeout=30)
                 break
         yield process, address
     finally:

@@ -2,125 +2,16 @@
 
 from __future__ import annotations
 
-import json
-import os
 import re
-import shutil
-import sys
-import time
-from collections.abc import Callable, Iterator
-from contextlib import suppress
-from dataclasses import dataclass
-from pathlib import Path
+from collections.abc import Callable
 from typing import Any
 
 import page_build
 import pytest
 from axe_playwright_python.sync_playwright import Axe
-from playwright import sync_api
+from driving import Place, at_frame, frame, opened, plays, until
 
-from vdsl.emit.build import write_build
 from vdsl.pipeline.lock import read_lock
-
-EXPECTED = bool(os.environ.get("VDS_EXPECT_CHROMIUM"))  # where it was installed for this, nothing is skipped
-CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
-pytestmark = pytest.mark.skipif(CHROMIUM is None and not EXPECTED, reason="chromium is not installed")
-
-
-@dataclass
-class Place:
-    """Where a page is: its address, its script and its build."""
-
-    url: str
-    file: Path
-    build: Path
-    served: bool
-
-
-@pytest.fixture(scope="module")
-def browser() -> Iterator[Any]:
-    with sync_api.sync_playwright() as playwright:
-        arguments = ["--no-sandbox"] if sys.platform == "linux" else []
-        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=arguments)
-        yield browser
-        browser.close()
-
-
-@pytest.fixture(scope="module")
-def disk(tmp_path_factory: pytest.TempPathFactory) -> Place:
-    file, build = page_build.project(tmp_path_factory.mktemp("disk"))
-    return Place((build / "index.html").as_uri(), file, build, False)
-
-
-@pytest.fixture(scope="module")
-def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Place]:
-    file, build = page_build.project(tmp_path_factory.mktemp("served"))
-    with page_build.served(file, build) as address:
-        yield Place(f"{address}/", file, build, True)
-
-
-@pytest.fixture(params=["disk", "server"])
-def place(request: pytest.FixtureRequest) -> Place:
-    return request.getfixturevalue(request.param)
-
-
-@pytest.fixture
-def visit(browser: Any) -> Iterator[Callable[..., Any]]:
-    """Opens a page; a script error, or something loaded from elsewhere, fails the test."""
-    contexts, wrong = [], []
-
-    def opened(url: str, width: int = 1280, height: int = 800, **how: Any) -> Any:
-        context = browser.new_context(viewport={"width": width, "height": height}, **how)
-        contexts.append(context)
-        page = context.new_page()
-        page.set_default_timeout(30_000)
-        page.on("pageerror", lambda error: wrong.append(str(error)))
-        page.on("console", lambda said: wrong.append(said.text) if said.type == "error" else None)
-        page.on("request", lambda asked: wrong.append(asked.url) if strange(asked.url, url) else None)
-        page.on("dialog", lambda dialog: wrong.append(dialog.message))
-        page.goto(url)
-        return page
-
-    yield opened
-    for context in contexts:
-        context.close()
-    assert wrong == []
-
-
-def strange(asked: str, url: str) -> bool:
-    home = "file:" if url.startswith("file:") else url[: url.index("/", 8)]
-    return not asked.startswith((home, "data:", "blob:"))
-
-
-def frame(page: Any, shot: str) -> Any:
-    return page.locator(f"#shot-{shot} .frame")
-
-
-def until(page: Any, expression: str, seconds: float = 30.0) -> None:
-    """Waits for an expression to hold; asked from here, as the page's policy lets no text be run in it."""
-    end = time.monotonic() + seconds
-    while True:
-        with suppress(sync_api.Error):  # there is nothing to ask while the page is being loaded anew
-            if page.evaluate(expression):
-                return
-        assert time.monotonic() < end, f"never: {expression}"
-        page.wait_for_timeout(40)
-
-
-def plays(page: Any, video: str) -> None:
-    until(page, f"(v => v && !v.paused && v.currentTime > 0)(document.querySelector('{video}'))")
-
-
-def at_frame(page: Any, frame: int) -> None:
-    until(page, f"document.getElementById('clock').textContent.startsWith('{frame}/24')")
-
-
-def opened(page: Any, shot: str = "s2") -> Any:
-    frame(page, shot).click()
-    page.wait_for_selector("#viewer[open]")
-    until(page, "document.getElementById('player').readyState >= 2")
-    return page
-
 
 # --- playing ----------------------------------------------------------------------------------
 
@@ -224,70 +115,6 @@ def test_served_a_take_is_chosen_and_let_go(server: Place, visit: Callable[..., 
     page.wait_for_selector("#pick-now .picked", state="detached")
     again.wait_for_selector("#shot-s2 .frame .picked", state="detached")  # it goes along by itself
     assert not server.file.with_name("story.vds.lock").exists()
-
-
-# --- going along ------------------------------------------------------------------------------
-
-
-def test_the_page_loads_a_new_build_and_stays_where_it_was(server: Place, visit: Callable[..., Any]) -> None:
-    page = visit(server.url)
-    page.locator("[name=words]").fill("anna")
-    opened(page, "s3")
-    page.keyboard.press("3")
-    page.keyboard.press("Space")
-    page.locator("#scrub").fill("5")
-    top = page.evaluate("scrollY")
-    assert top > 0
-    at_frame(page, 6)
-    try:
-        write_build(server.build, page_build.film(server.build, title="Evening coffee"))
-        until(page, "document.title === 'Evening coffee'", 15)
-        page.wait_for_selector("#viewer[open]")
-        at_frame(page, 6)
-        assert "take 3 of 7" in page.locator("#viewer-rank").inner_text()
-        assert page.evaluate("scrollY") == pytest.approx(top, abs=2)
-        assert page.locator("[name=words]").input_value() == "anna"
-    finally:
-        write_build(server.build, page_build.film(server.build))
-
-
-def test_errors_are_shown_while_the_last_build_stays(server: Place, visit: Callable[..., Any]) -> None:
-    page = visit(server.url)
-    found = {
-        "severity": "error",
-        "line": 18,
-        "title": "unknown action",
-        "message": page_build.ATTACK,
-        "help": "walk?",
-    }
-    found["suggestion"] = "wave"
-    status = {"schema": "vds.status/1", "state": "error", "message": "1 error", "diagnostics": [found]}
-    status["process"] = os.getpid()
-    path = server.build / "status.json"
-    try:
-        path.write_text(json.dumps(status))
-        page.wait_for_selector("#told.wrong")
-        told = page.locator("#told").inner_text()
-        assert "line 18" in told
-        assert f"{page_build.ATTACK}; did you mean `wave`?" in told
-        assert frame(page, "s1").is_visible()
-        path.write_text(json.dumps(status | {"state": "building", "message": "compiling", "diagnostics": []}))
-        until(page, "document.getElementById('told').textContent === 'compiling'")
-    finally:
-        path.unlink()
-
-
-def test_library_and_stage_are_reached_from_the_page(server: Place, visit: Callable[..., Any]) -> None:
-    page = visit(server.url)
-    page.get_by_role("link", name="Library").click()
-    page.locator("#words").fill("coffee pot")
-    until(page, "document.getElementById('found').textContent.endsWith('found')")
-    assert page.locator(".row:visible .name").first.inner_text() == "coffee_pot"
-    page.locator(".row:visible summary").first.click()
-    until(page, "document.querySelector('.row[open] .drawn img')?.naturalWidth > 200", 60)
-    page.get_by_role("link", name="The storyboard").click()
-    page.get_by_role("link", name="Set preview").click()
-    until(page, "document.querySelector('main img')?.naturalWidth > 600", 60)
 
 
 # --- finding, keys ----------------------------------------------------------------------------

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import sys
+from dataclasses import replace
 from html.parser import HTMLParser
 from pathlib import Path
 from typing import Any
@@ -162,3 +163,22 @@ def test_a_draft_shows_pictures_and_no_films(tmp_path: Path) -> None:
     assert "None" not in html
     (opened,) = [a for t, a in page.tags if a.get("class") == "frame"]
     assert opened["href"] == "shots/s1/take-1.jpg"
+
+
+def test_the_foot_says_who_ranked_what_is_shown(tmp_path: Path) -> None:
+    films = [f.built(tmp_path, "s1"), f.built(tmp_path, "s2")]
+    stills = [replace(shot, takes=tuple(drafted(t) for t in shot.takes[:1])) for shot in films]
+
+    def foot(*shots: Any, **said: Any) -> str:
+        page = parsed(page_html(storyboard_document(replace(f.film(shots), **said))))
+        return page.text.partition("takes ranked by ")[2].partition(". What")[0]
+
+    assert foot(*films) == "the ranker"
+    assert foot(*films, judge="geometry") == "their geometry"
+    assert foot(*stills, draft=True) == "their geometry, for this draft"
+    assert foot(films[0], stills[1], draft=True) == "the ranker, in the draft's stills by their geometry"
+    assert foot(*stills, draft=True, judge="geometry") == "their geometry"
+
+
+def drafted(take: Any) -> Any:
+    return replace(take, media=replace(take.media, sketched=True))

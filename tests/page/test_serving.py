@@ -12,10 +12,11 @@ import subprocess
 import sys
 import time
 from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
 
-import httpx
+import httpx2
 import page_build
 import psutil
 import pytest
@@ -25,6 +26,7 @@ from starlette.testclient import TestClient
 from vdsl.cli.serve import _listen
 from vdsl.pipeline.lock import Choice, Lock, choose, read_lock, write_lock
 from vdsl.pipeline.serving import LARGEST_BODY, Desk, inside, serving
+from vdsl.pipeline.serving_further import Further
 from vdsl.pipeline.serving_state import Watched
 
 HOST, TOKEN = "127.0.0.1:8765", "a-token-of-this-run"
@@ -191,7 +193,7 @@ def test_a_picture_on_another_site_costs_nothing_here(client: TestClient) -> Non
 def test_without_the_token_nothing_is_written(client: TestClient, desk: Desk, token: str) -> None:
     before = everything(desk.file.parent)
     headers = {"X-VDS-Token": token.encode()} if token else {}
-    for path in ("/choose", "/unchoose"):
+    for path in ("/choose", "/unchoose", "/further"):
         assert client.post(path, json={"shot": "s1", "take": 1}, headers=headers).status_code == 403  # type: ignore[arg-type]
     assert everything(desk.file.parent) == before
 
@@ -263,6 +265,58 @@ def test_a_lock_that_does_not_read_is_not_written_over(client: TestClient, desk:
     lock.write_text("<<<<<<< ours\n")
     assert choice(client, {"shot": "s1", "take": 1}).status_code == 409
     assert lock.read_text() == "<<<<<<< ours\n"
+
+
+# --- more takes -------------------------------------------------------------------------------
+
+
+def more(client: TestClient, body: Any) -> Any:
+    return client.post("/further", json=body, headers={"X-VDS-Token": TOKEN})
+
+
+def told_of(desk: Desk, **said: Any) -> None:
+    """The build's document with something else in it."""
+    path = desk.build / "storyboard.json"
+    document = json.loads(path.read_text())
+    document["script"] = hashlib.sha256(page_build.SCRIPT.encode()).hexdigest()
+    path.write_text(json.dumps(document | said))
+
+
+def test_more_takes_are_refused_with_why(client: TestClient, desk: Desk) -> None:
+    before = everything(desk.file.parent)
+    assert "the script has changed" in more(client, {"shot": "s1"}).json()["error"]
+    for body, status in (({"shot": "s9"}, 409), ({"shot": "../x"}, 409), ({}, 422), ({"shot": 1}, 422)):
+        assert more(client, body).status_code == status
+    assert everything(desk.file.parent) == before
+    told_of(desk, draft=True)
+    assert "draft" in more(client, {"shot": "s1"}).json()["error"]
+    (desk.build / "storyboard.json").unlink()
+    assert "no build" in more(client, {"shot": "s1"}).json()["error"]
+
+
+def drawn(desk: Desk, ending: bool = False) -> dict[str, dict[str, str]]:
+    """What is told of further takes when they have been asked for and their turn is over."""
+    turns = ThreadPoolExecutor(1)
+    further = Further(desk.file, desk.build, turns, lambda: False, lambda: ending)
+    further.ask("s1")
+    further.ask("s1")  # once is enough
+    turns.shutdown()
+    return further.state()
+
+
+def test_what_fails_while_more_takes_are_drawn_is_told(desk: Desk) -> None:
+    desk.file.with_name("story.vds.lock").write_text("<<<<<<< ours\n")
+    before = everything(desk.build)
+    told = drawn(desk)["s1"]
+    assert told["state"] == "error"
+    assert told["message"].startswith("the script or its lock has errors")
+    assert everything(desk.build) == before
+
+
+def test_drawing_ends_with_the_server(desk: Desk) -> None:
+    before = everything(desk.build)
+    assert drawn(desk, ending=True)["s1"]["state"] != "error"
+    assert everything(desk.build) == before
 
 
 # --- going along ------------------------------------------------------------------------------
@@ -366,7 +420,7 @@ def test_watching_goes_along_and_ends_with_it(tmp_path: Path) -> None:
     with page_build.serving_process(file, build, "--watch") as (process, address):
         (watching,) = psutil.Process(process.pid).children()
         for _ in range(300):
-            page = httpx.get(f"{address}/")
+            page = httpx2.get(f"{address}/")
             if "wvae" in page.text:
                 break
             time.sleep(0.2)
@@ -383,7 +437,7 @@ def test_watching_ends_also_with_a_server_that_was_killed(tmp_path: Path) -> Non
     file.write_text(page_build.SCRIPT.replace("wave", "wvae"))
     with page_build.serving_process(file, build, "--watch") as (process, address):
         (watching,) = psutil.Process(process.pid).children()
-        while "wvae" not in httpx.get(f"{address}/", timeout=60).text:
+        while "wvae" not in httpx2.get(f"{address}/", timeout=60).text:
             time.sleep(0.2)
         process.kill()
         watching.wait(30)
@@ -398,8 +452,8 @@ def test_two_that_begin_at_once_get_a_port_each(desk: Desk) -> None:
         page_build.serving_process(desk.file, desk.build) as (_, second),
     ):
         assert first != second
-        assert httpx.get(f"{first}/", timeout=60).status_code == 200
-        assert httpx.get(f"{second}/", timeout=60).status_code == 200
+        assert httpx2.get(f"{first}/", timeout=60).status_code == 200
+        assert httpx2.get(f"{second}/", timeout=60).status_code == 200
     one, two = _listen(None), _listen(None)  # both before either is served
     assert one.getsockname() != two.getsockname()
     with pytest.raises(typer.Exit):
@@ -413,7 +467,7 @@ def test_watching_that_dies_is_told_and_the_page_stays(desk: Desk) -> None:
         psutil.Process(process.pid).children()[0].kill()
         assert process.stderr is not None
         assert "watching ended by itself" in process.stderr.readline()
-        assert httpx.get(f"{address}/").status_code == 200
+        assert httpx2.get(f"{address}/").status_code == 200
 
 
 def test_serving_says_what_is_missing(tmp_path: Path) -> None:

@@ -130,6 +130,7 @@ def test_a_take_is_chosen_by_rank_or_key_and_taken_back(script: Path) -> None:
     assert (kept.key, kept.proposals, kept.words) == ("5-aaaaaaaa", 12, "static medium eye-level")
     for shot, take, said in (
         ("kitchen-anna-wave", 3, "it has 1 (5-aaaaaaaa) and 2 (2-bbbbbbbb)"),
+        ("kitchen-anna-wave", 3, f"`vdsc compile {script} --more kitchen-anna-wave` draws more"),
         ("kitchen-anna-wve", 1, "did you mean `kitchen-anna-wave`"),
     ):
         with pytest.raises(ChoiceError) as caught:

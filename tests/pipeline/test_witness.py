@@ -13,7 +13,7 @@ from vdsl.pipeline.filming import Camerawork
 from vdsl.pipeline.judging import GeometryJudge
 from vdsl.pipeline.script import check_source
 from vdsl.pipeline.selection import choose_takes
-from vdsl.pipeline.witness import MEASURE, REASON, UNLIKE, counted, vet
+from vdsl.pipeline.witness import MEASURE, REASON, UNLIKE, best, counted, vet
 from vdsl.propose.story import propose
 from vdsl.propose.types import ProposalGrid
 
@@ -43,7 +43,7 @@ def test_what_is_seen_is_as_was_promised(camerawork: Camerawork) -> None:
     act, grid = proposed("static medium")
     shot = act.line.shots[0]
     scores = GeometryJudge().scores(grid.cameras, None)
-    vetted = vet(grid, scores, 3, (act.staged, shot, act.filming), camerawork)
+    vetted = vet(grid, scores, best(grid, 3), (act.staged, shot, act.filming), camerawork)
     assert not vetted.failed
     assert np.array_equal(vetted.order, scores)
     looked = [c.measures for c in grid.cameras if MEASURE in c.measures]
@@ -66,7 +66,7 @@ def test_a_subject_behind_a_wall_gives_way_to_the_next(camerawork: Camerawork) -
         cameras[i] = replace(cameras[i], hidden_walls=walled, measures=dict(cameras[i].measures))
     grid = replace(grid, cameras=tuple(cameras))
     assert set(choose_takes(grid.cameras, scores, 3)) >= set(outside)
-    vetted = vet(grid, scores, 3, (act.staged, shot, act.filming), camerawork)
+    vetted = vet(grid, scores, best(grid, 3), (act.staged, shot, act.filming), camerawork)
     chosen = choose_takes(grid.cameras, vetted.order, 3)
     assert set(vetted.failed) >= set(outside)
     assert not set(chosen) & set(outside)
@@ -75,7 +75,7 @@ def test_a_subject_behind_a_wall_gives_way_to_the_next(camerawork: Camerawork) -
     assert counted(grid.rejected, vetted.failed, chosen)[REASON] == len(vetted.failed)
     # where nothing else is left they stay
     alone = replace(grid, cameras=tuple(cameras[i] for i in outside))
-    worst = vet(alone, scores[outside], 1, (act.staged, shot, act.filming), camerawork)
+    worst = vet(alone, scores[outside], best(alone, 1), (act.staged, shot, act.filming), camerawork)
     assert len(choose_takes(alone.cameras, worst.order, 1)) == 1
     assert counted({}, worst.failed, choose_takes(alone.cameras, worst.order, 1)) == {REASON: 1}
 
@@ -83,7 +83,7 @@ def test_a_subject_behind_a_wall_gives_way_to_the_next(camerawork: Camerawork) -
 def test_things_are_looked_at_and_places_are_not(camerawork: Camerawork) -> None:
     act, grid = proposed("static close-up", "focus table")
     scores = GeometryJudge().scores(grid.cameras, None)
-    vet(grid, scores, 2, (act.staged, act.line.shots[0], act.filming), camerawork)
+    vet(grid, scores, best(grid, 2), (act.staged, act.line.shots[0], act.filming), camerawork)
     shares = [c.measures[MEASURE] for c in grid.cameras if MEASURE in c.measures]
     assert len(shares) >= 2
     assert min(shares) > 0.5
@@ -91,7 +91,7 @@ def test_things_are_looked_at_and_places_are_not(camerawork: Camerawork) -> None
     (act,) = stage_acts(check_source(Source("seen.vds", text)))
     grid = propose(act.line, act.line.shots[0], act.state, act.filming)
     scores = GeometryJudge().scores(grid.cameras, None)
-    vet(grid, scores, 2, (act.staged, act.line.shots[0], act.filming), camerawork)
+    vet(grid, scores, best(grid, 2), (act.staged, act.line.shots[0], act.filming), camerawork)
     assert not any(MEASURE in c.measures for c in grid.cameras)
 
 
@@ -113,7 +113,7 @@ anna at bed facing wardrobe
     assert floor > 2.0
     scores = GeometryJudge().scores(grid.cameras, None)
     scene = (act.staged, shot, act.filming)
-    vetted = vet(grid, scores, 3, scene, camerawork)
+    vetted = vet(grid, scores, best(grid, 3), scene, camerawork)
     kept = choose_takes(grid.cameras, vetted.order, 3)
     for i in kept:
         measures = grid.cameras[i].measures
@@ -127,7 +127,7 @@ anna at bed facing wardrobe
     sunk = replace(grid, cameras=tuple(cameras))
     order = scores.copy()
     order[list(kept)] += 5.0
-    assert set(vet(sunk, order, 3, scene, camerawork).failed) >= set(kept)
+    assert set(vet(sunk, order, best(sunk, 3), scene, camerawork).failed) >= set(kept)
 
 
 def test_what_came_out_otherwise_gives_way(camerawork: Camerawork) -> None:
@@ -135,14 +135,14 @@ def test_what_came_out_otherwise_gives_way(camerawork: Camerawork) -> None:
     act, grid = proposed("push medium")
     shot, scene = act.line.shots[0], (act.staged, act.line.shots[0], act.filming)
     scores = GeometryJudge().scores(grid.cameras, None)
-    assert not vet(grid, scores, 3, scene, camerawork).failed
+    assert not vet(grid, scores, best(grid, 3), scene, camerawork).failed
     liked, cameras = choose_takes(grid.cameras, scores, 2), list(grid.cameras)
     for i in liked:
         t = cameras[i].track
         back = replace(t, position=t.position[::-1], rotation=t.rotation[::-1], look_at=t.look_at[::-1])
         cameras[i] = replace(cameras[i], track=back, measures=dict(cameras[i].measures))
     turned = replace(grid, cameras=tuple(cameras))
-    vetted = vet(turned, scores, 3, (act.staged, shot, act.filming), camerawork)
+    vetted = vet(turned, scores, best(turned, 3), (act.staged, shot, act.filming), camerawork)
     assert {i: vetted.failed.get(i) for i in liked} == dict.fromkeys(liked, UNLIKE)
     kept = choose_takes(turned.cameras, vetted.order, 3)
     assert not set(kept) & set(liked)

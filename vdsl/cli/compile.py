@@ -11,6 +11,7 @@ import typer
 from ..emit.guides import Guides, guides_of
 from ..lang import Settings
 from .check import USAGE, Format, check_or_exit, stop
+from .naming import shot_ids, shot_named
 
 
 class Device(str, Enum):
@@ -96,6 +97,15 @@ def compile_command(
             show_default=False,
         ),
     ] = None,
+    more: Annotated[
+        list[str] | None,
+        typer.Option(
+            help="Draw further takes of this shot, and go on with the build as it was made.",
+            metavar="SHOT",
+            show_default=False,
+            autocompletion=shot_ids,
+        ),
+    ] = None,
     cache: Annotated[
         bool, typer.Option("--cache/--no-cache", help="Take shots that did not change from earlier runs.")
     ] = True,
@@ -121,10 +131,11 @@ def compile_command(
     )
     drawn = _guides(guides)
     # The cheap check first: a script with errors is told so before anything heavy is loaded.
-    check_or_exit(file, format.value, settings, quiet_warnings=True)
+    checked = check_or_exit(file, format.value, settings, quiet_warnings=True)
     if not file.is_file():  # a pipe is empty by now, and the check was only the first reading
         stop(f"{file} is no ordinary file; save the storyboard first", USAGE)
-    how = {
+    how: dict[str, Any] = {
+        "further": tuple(shot_named(checked, shot) for shot in more or ()) or None,
         "settings": settings,
         "rank": rank.value if rank else None,
         "weights": weights,
@@ -135,6 +146,8 @@ def compile_command(
         "guides": drawn,
         "cache": cache,
     }
+    if more:
+        how = _as_made(out or Path("build") / file.stem, how)
     _run(file, out, how, format.value, show.value, as_json)
 
 
@@ -157,6 +170,19 @@ def _run(file: Path, out: Path | None, how: dict[str, Any], format: str, show: s
         print_document(result, file)
     else:
         print_outcome(result, format, file, show)
+
+
+def _as_made(build: Path, how: dict[str, Any]) -> dict[str, Any]:
+    """What was said, and what was not as it was said for the build that is there."""
+    from ..pipeline.options import made_by
+
+    made = made_by(build)
+    if not (build / "storyboard.json").is_file():
+        stop(f"there is no build at {build} to go on with; compile without --more first", USAGE)
+    made_settings: Settings = made.pop("settings", Settings())
+    how["settings"].complete(made_settings)
+    how["guides"] = how["guides"] or made.pop("guides", how["guides"])
+    return made | {name: value for name, value in how.items() if value is not None}
 
 
 def _guides(text: str) -> Guides:

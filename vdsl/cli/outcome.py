@@ -41,7 +41,7 @@ def print_outcome(result: Result, format: str, file: Path, show: str = "auto") -
     takes = sum(len(s.takes) for s in shots)
     film = f"{frames * den / num:.1f} s of film in {result.report.seconds:.0f} s"
     write_line(f"{count(len(shots), 'shot')}, {count(takes, 'take')}, {film}", sys.stdout)
-    for text in _cutting(result.build):
+    for text in (*_further(result), *_cutting(result.build)):
         write_line(printable(text), sys.stdout)
     for name in ("index.html", "animatic.mp4", "sheet.png"):
         if (result.folder / name).exists():
@@ -90,6 +90,17 @@ def _facts(take: BuiltTake) -> TakeFacts:
     words = {"movement": camera.movement, "scale": camera.scale, "angle": camera.angle}
     measures = {name: 0.0 for name in MEASURES} | camera.measures
     return TakeFacts(take.rank, take.score, words, None, measures, camera.params, take.logit)
+
+
+def _further(result: Result) -> list[str]:
+    """Of the shots of which further takes were asked for, how many there are now."""
+    lines = []
+    for shot, wanted in result.further.items():
+        built = next(s for s in result.build.shots if s.shot.id == shot)
+        less = len(built.takes) < wanted
+        why = f"; no other of its {built.proposals} proposals looks different" if less else ""
+        lines.append(f"{shot}: {count(len(built.takes), 'take')} now{why}")
+    return lines
 
 
 def _cutting(build: Build) -> list[str]:

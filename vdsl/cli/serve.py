@@ -28,8 +28,8 @@ def serve(
 ) -> None:
     """Show the storyboard page live, on this machine only, and choose takes in it.
 
-    A choice is written to FILE.lock, which compile honours; nothing else is ever written. The page loads
-    itself anew with every build. Ctrl-C ends it.
+    A choice is written to FILE.lock, which compile honours. More takes of a shot are drawn when asked for;
+    the page loads itself anew with every build. Ctrl-C ends it.
     """
     if not file.is_file():
         stop(f"there is no file {file}", USAGE)

@@ -22,9 +22,11 @@ from .exchange import exchange
 #: Everything the compiler puts at the top of a build; other entries in an old build are the
 #: writer's own and are carried over to the new one.
 OWN = ("index.html", "animatic.mp4", "storyboard.json", "report.json", "status.json", "shots", "plans")
+#: What somebody wants of the builds to come; it is carried over too, and removed with the build.
+WISHES = "further.json"
 _STORYBOARD = "storyboard.json"
 #: What ``vdsc watch`` tells, also before there is a build.
-_STATUS = "status.json"
+STATUS = "status.json"
 #: Seconds without a change after which a half-made build is nobody's.
 _LEFTOVER_AGE = 6 * 3600
 
@@ -102,7 +104,7 @@ def _refuse_foreign(place: Path) -> None:
     if not place.is_dir():
         raise BuildFolderError(f"cannot build into {place}: it is a file")
     try:
-        if all(entry.name == _STATUS for entry in place.iterdir()):
+        if all(entry.name == STATUS for entry in place.iterdir()):
             return
         schema = json.loads((place / _STORYBOARD).read_text("utf-8")).get("schema", "")
     except (OSError, ValueError, AttributeError):
@@ -225,7 +227,7 @@ def remove_build(place: Path) -> int:
     """Remove what the compiler wrote into a build; returns the bytes it took. Anything else in it stays."""
     freed = 0
     for entry in list(place.iterdir()):
-        if entry.name in OWN or (entry.name.startswith("sheet") and entry.suffix == ".png"):
+        if entry.name in (*OWN, WISHES) or (entry.name.startswith("sheet") and entry.suffix == ".png"):
             files = [entry] if entry.is_file() else [p for p in entry.rglob("*") if p.is_file()]
             freed += sum(p.stat().st_size for p in files)
             shutil.rmtree(entry) if entry.is_dir() and not entry.is_symlink() else entry.unlink()

@@ -29,6 +29,8 @@ _CHARTS = (
 )
 #: Takes of a strip that are shown before one asks for more.
 STRIP = 5
+#: Takes of a shot after which no more are drawn.
+MOST = 40
 
 
 def page_view(
@@ -37,10 +39,11 @@ def page_view(
     """Values of ``page.html.j2``; plans: SVG of a shot's takes, best first, by its id; and of scenes."""
     scenes = zip(document["scenes"], [*scene_plans, *[""] * len(document["scenes"])], strict=False)
     shots = [_shot(document, shot, n) for n, shot in enumerate(document["shots"], start=1)]
+    drafted = sum(any(not take["video"] for take in shot["takes"]) for shot in shots)
     return {
         "title": document["title"] or "Untitled",
         "source": document["source"],
-        "judge": "the ranker" if document["judge"] == "ranker" else document["judge"],
+        "judge": _judge(document, drafted),
         "size": document["size"],
         "aspect": f"{document['size'][0]} / {document['size'][1]}",
         "length": seconds_words(document["statistics"]["frames"], document["fps"]),
@@ -49,7 +52,7 @@ def page_view(
         "shots": shots,
         "shown": [shot for shot in shots if shot["takes"]],
         "draft": document["draft"],
-        "drafted": sum(any(not take["video"] for take in shot["takes"]) for shot in shots),
+        "drafted": drafted,
         "groups": _groups(document, shots),
         "filters": _filters(document, shots),
         "charts": [c for c in (_chart(document, *chart) for chart in _CHARTS) if c["rows"]],
@@ -60,8 +63,18 @@ def page_view(
         "cuts": [_cut(cut) for cut in document["continuity"]],
         "plans": plans,
         "strip": STRIP,
+        "most": MOST,
         "board": _board(document, shots),
     }
+
+
+def _judge(document: Document, drafted: int) -> str:
+    """Who ranked the takes; of a draft's stills that is their geometry, whoever ranks the films."""
+    judge = "the ranker" if document["judge"] == "ranker" else "their geometry"
+    if not drafted or document["judge"] != "ranker":
+        return judge
+    filmed = sum(bool(shot["takes"]) for shot in document["shots"]) - drafted
+    return f"{judge}, in the draft's stills by their geometry" if filmed else "their geometry, for this draft"
 
 
 # --- shots ------------------------------------------------------------------------------------

@@ -47,6 +47,7 @@ def report_document(report: RunReport) -> dict[str, Any]:
         },
         "versions": {"python": platform.python_version(), **{name: _version(name) for name in PACKAGES}},
         "notes": list(report.notes),
+        "options": dict(report.options),
     }
 
 

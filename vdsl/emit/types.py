@@ -5,9 +5,10 @@ The pipeline fills these in; no module of this package looks anything up elsewhe
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -206,7 +207,10 @@ class Stage:
 
 @dataclass(frozen=True)
 class RunReport:
-    """What a run took. peak_mib: peak resident memory; device: what drew the pictures."""
+    """What a run took. peak_mib: peak resident memory; device: what drew the pictures.
+
+    options: what was asked for other than by default, as plain values
+    """
 
     seconds: float
     stages: tuple[Stage, ...]
@@ -215,3 +219,4 @@ class RunReport:
     peak_mib: float = 0.0
     device: str = "cpu"
     notes: tuple[str, ...] = field(default=())
+    options: Mapping[str, Any] = field(default_factory=dict)

@@ -35,11 +35,12 @@ from .chosen import Choices, find_again, made_with
 from .depends import digest, shot_digests
 from .edit import Edited, Reel, cut_findings, edited
 from .filming import Camerawork
+from .further import wishes, with_further, write_wishes
 from .judging import DiscriminatorJudge, GeometryJudge, Judge
 from .keys import code_digest, judge_digest
 from .letters import warn_of_letters
 from .lock import Choice, lock_path, read_lock
-from .options import Options
+from .options import Options, options_document
 from .packing import PackError, pack, unpack
 from .parts import kept_parts
 from .placing import find
@@ -55,12 +56,16 @@ __all__ = ["Act", "Result", "Workshop", "compile_file", "peak_mib", "stage_acts"
 
 @dataclass(frozen=True, eq=False)
 class Result:
-    """What a compilation gave. warnings: found on the way; folder: where the build is; report: timings."""
+    """What a compilation gave. warnings: found on the way; folder: where the build is; report: timings.
+
+    further: how many takes were wanted of the shots of which there were to be further ones
+    """
 
     folder: Path
     build: Build
     warnings: Report
     report: RunReport
+    further: dict[str, int] = field(default_factory=dict)
 
 
 @dataclass(eq=False)
@@ -109,6 +114,10 @@ def compile_file(
         checked, choices = _checked(path, options)
         warn_of_letters(checked.storyboard, checked.report)
     with staged_build(folder, one_at_a_time) as staging:
+        known = wishes(folder, choices.depends)
+        wanted = with_further(known, options.further, checked.storyboard, choices.depends)
+        if options.further:  # else they are carried over as they are by then
+            write_wishes(staging, wanted)
         acts = _played(checked, cache, workshop, clock)
         run = Run(
             checked.storyboard,
@@ -119,6 +128,7 @@ def compile_file(
             workshop.camerawork(options.device),
             partial(workshop.judge, options, clock),
             clock,
+            {shot: wish.takes for shot, wish in wanted.items()},
         )
         build = _Filming(run, choices).build()
         _warn_of_poor_shots(build.shots, checked.report)
@@ -126,7 +136,8 @@ def compile_file(
             write_build(staging, build, kept_parts(cache))
         report = _report(perf_counter() - started, clock, run, tuple(t.text for t in build.trades))
         write_report(staging / "report.json", report)
-        result = Result(folder, build, checked.report, report)
+        asked = {shot: wanted[shot].takes for shot in options.further if shot in wanted}
+        result = Result(folder, build, checked.report, report, asked)
         finish(staging, result)
     cache.tidy()
     return result
@@ -205,7 +216,7 @@ class _Filming:
         self._quick: Shooting | None = None
         if run.options.draft:
             quick = replace(run.options, rank="geometry", edit=False)
-            self._quick = Shooting(replace(run, options=quick, judge=GeometryJudge))
+            self._quick = Shooting(replace(run, options=quick, judge=GeometryJudge, further={}))
 
     def build(self) -> Build:
         """The whole film, its takes in the run's folder."""
@@ -220,7 +231,8 @@ class _Filming:
             order = [i for i in (plan.takes[shot.id] if plan else judged.takes) if i in judged.kept]
             shown = [(crew, judged.kept[i]) for i in order]
             if picked is not None:
-                shown = [picked, *(s for s in shown if s[1].key != picked[1].key)][: shot.takes]
+                shown = [picked, *(s for s in shown if s[1].key != picked[1].key)]
+                shown = shown[: max(shot.takes, len(judged.takes))]
             if shown:
                 best = shown[0][1]
                 reel.add(line, shot, [best.camera.index], [best.score], [best.ends])
@@ -391,7 +403,8 @@ def _report(seconds: float, clock: StageClock, run: Run, notes: tuple[str, ...])
         for name, spent in clock.seconds.items()
     )
     cache, device = run.cache, run.options.device
-    return RunReport(seconds, stages, cache.hits, cache.misses, peak_mib(), device, notes)
+    said = options_document(run.options)
+    return RunReport(seconds, stages, cache.hits, cache.misses, peak_mib(), device, notes, said)
 
 
 def peak_mib() -> float:

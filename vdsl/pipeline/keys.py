@@ -40,7 +40,7 @@ _ENDINGS = (".py", ".lark", ".vds")
 #: Options that decide neither what is proposed nor what is drawn, or are counted where they do.
 _ELSEWHERE = frozenset(
     {"settings", "weights", "rank", "burn_in", "guides", "edit", "cache", "draft", "arrows", "taste"}
-)
+) | {"further"}
 
 
 @lru_cache(maxsize=1)

@@ -243,7 +243,7 @@ def choose(file: str | Path, shot: str, take: int | str, build_dir: str | Path) 
     """
     document = _build(Path(build_dir))
     entry = _entry(document, shot)
-    found = _take_of(entry, take)
+    found = _take_of(entry, take, Path(file))
     words = " ".join(str(found[k]) for k in ("movement", "scale", "angle"))
     made = document["seed"]
     choice = Choice(shot, found["key"], words, int(entry["wanted"]), int(made), entry["depends"])
@@ -329,7 +329,7 @@ def _entry(document: dict[str, Any], shot: str) -> dict[str, Any]:
     return shots[shot]
 
 
-def _take_of(entry: dict[str, Any], take: int | str) -> dict[str, Any]:
+def _take_of(entry: dict[str, Any], take: int | str, file: Path) -> dict[str, Any]:
     takes: list[dict[str, Any]] = entry["takes"]
     for found in takes:
         if take in (found["rank"], found["key"]):
@@ -337,4 +337,7 @@ def _take_of(entry: dict[str, Any], take: int | str) -> dict[str, Any]:
     if not takes:
         raise ChoiceError(f"the shot `{entry['id']}` has no take to choose")
     has = listing((f"{t['rank']} ({t['key']})" for t in takes), last="and")
-    raise ChoiceError(f"the shot `{entry['id']}` has no take {take}; it has {has}")
+    raise ChoiceError(
+        f"the shot `{entry['id']}` has no take {take}; it has {has}. "
+        f"`vdsc compile {file} --more {entry['id']}` draws more"
+    )

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection, Sequence
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -36,6 +38,25 @@ def choose_takes(cameras: tuple[CameraProposal, ...], scores: NDArray[np.floatin
     spare = [i for i in order if i not in set(chosen)]
     chosen += spare[: count - len(chosen)]
     return sorted(chosen, key=order.index)
+
+
+def further_takes(
+    cameras: tuple[CameraProposal, ...],
+    scores: NDArray[np.floating],
+    known: Sequence[int],
+    failed: Collection[int],
+    count: int,
+) -> list[int]:
+    """Indices of up to ``count`` proposals more, best first: none that looks like one already known or like
+    another, and none that failed. Where the shot does not offer as many, there are fewer.
+    """
+    found: list[int] = []
+    for i in ranked(scores):
+        if len(found) == count:
+            break
+        if i not in failed and not any(alike(cameras[i], cameras[j]) for j in (*known, *found)):
+            found.append(i)
+    return found
 
 
 def alike(a: CameraProposal, b: CameraProposal) -> bool:

@@ -1,8 +1,9 @@
 """The storyboard page, live: what ``vdsc serve`` answers.
 
 Assumes a script and the folder of its build, which may come, change and go. Guarantees that no file outside
-that folder is ever read out, and that the only thing written is the script's lock, by
-:mod:`vdsl.pipeline.lock`, for a request that :class:`~vdsl.pipeline.serving_guard.Guard` let through.
+that folder is ever read out, and that nothing is written but the script's lock (:mod:`vdsl.pipeline.lock`)
+and a build with further takes (:mod:`vdsl.pipeline.serving_further`), for requests that
+:class:`~vdsl.pipeline.serving_guard.Guard` let through.
 """
 
 from __future__ import annotations
@@ -11,7 +12,7 @@ import asyncio
 import json
 import os
 import stat
-from collections.abc import AsyncIterator
+from collections.abc import AsyncIterator, Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -26,6 +27,7 @@ from starlette.routing import Route
 from ..emit.templating import rendered
 from .lock import ChoiceError, choose, clear
 from .script import ScriptError
+from .serving_further import Further, FurtherError
 from .serving_guard import FILES, Guard
 from .serving_library import Atelier, library_routes
 from .serving_state import Watched
@@ -56,14 +58,16 @@ def serving(desk: Desk) -> Starlette:
 
     ``app.state.ending`` says whether it is to end, so that pages that listen are let go.
     """
-    pages = _Pages(desk)
+    atelier = Atelier(desk.file, desk.device)
+    pages = _Pages(desk, atelier, lambda: bool(app.state.ending()))
     routes = [
         Route("/", pages.index),
         Route("/index.html", pages.index),
         Route("/events", pages.events),
         Route("/choose", pages.choose, methods=["POST"]),
         Route("/unchoose", pages.unchoose, methods=["POST"]),
-        *library_routes(Atelier(desk.file, desk.device)),
+        Route("/further", pages.more, methods=["POST"]),
+        *library_routes(atelier),
         Route("/{path:path}", pages.file),
     ]
     guard = Middleware(Guard, port=desk.port, token=desk.token)
@@ -73,9 +77,10 @@ def serving(desk: Desk) -> Starlette:
 
 
 class _Pages:
-    def __init__(self, desk: Desk) -> None:
+    def __init__(self, desk: Desk, atelier: Atelier, ending: Callable[[], bool]) -> None:
         self.desk = desk
         self.watched = Watched(desk.file, desk.build)
+        self.further = Further(desk.file, desk.build, atelier.turns, self.watched.is_stale, ending)
 
     async def index(self, request: Request) -> Response:
         """The build's page with the token in it; before there is a build, what is going on."""
@@ -102,7 +107,8 @@ class _Pages:
     async def _told(self, request: Request) -> AsyncIterator[str]:
         last, quiet = "", 0.0
         while not (request.app.state.ending() or await request.is_disconnected()):
-            state = json.dumps(await run_in_threadpool(self.watched.state))
+            told = await run_in_threadpool(self.watched.state)
+            state = json.dumps(told | {"further": self.further.state()})
             if state != last:
                 yield f"event: state\ndata: {state}\n\n"
                 last, quiet = state, 0.0
@@ -126,6 +132,17 @@ class _Pages:
         if not isinstance(shot, str):
             return JSONResponse({"error": "say a shot"}, status_code=422)
         return await self._change(lambda: clear(self.desk.file, shot, self.desk.build))
+
+    async def more(self, request: Request) -> Response:
+        """``{"shot": id}``: further takes of it are drawn, one shot after the other."""
+        shot = (await _body(request)).get("shot")
+        if not isinstance(shot, str):
+            return JSONResponse({"error": "say a shot"}, status_code=422)
+        try:
+            await run_in_threadpool(self.further.ask, shot)
+        except FurtherError as error:
+            return JSONResponse({"error": str(error)}, status_code=409)
+        return JSONResponse({"further": self.further.state()}, status_code=202)
 
     async def _change(self, change: Any) -> Response:
         try:

@@ -55,7 +55,7 @@ class Atelier:
 
     def __init__(self, file: Path, device: str) -> None:
         self.file, self.device = file, device
-        self._thread = ThreadPoolExecutor(1, "atelier")
+        self.turns = ThreadPoolExecutor(1, "atelier")
         self._waiting = 0
         self._kept: OrderedDict[tuple[str, ...], bytes] = OrderedDict()
         self._studio: tuple[str, Studio] | None = None
@@ -69,7 +69,7 @@ class Atelier:
             raise BusyError
         self._waiting += 1
         try:
-            data = await asyncio.get_running_loop().run_in_executor(self._thread, lambda: _png(_drawn(draw)))
+            data = await asyncio.get_running_loop().run_in_executor(self.turns, lambda: _png(_drawn(draw)))
         finally:
             self._waiting -= 1
         self._kept[key] = data

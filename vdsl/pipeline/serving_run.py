@@ -26,7 +26,7 @@ def serve_until_stopped(
 ) -> None:
     """Serve a build until it is stopped. opening: show it in a browser; watching: compile on every save."""
     port = listening.getsockname()[1]
-    desk = Desk(file.resolve(), build.resolve(), port, secrets.token_urlsafe(32), device)
+    desk = Desk(file, build.resolve(), port, secrets.token_urlsafe(32), device)
     app = serving(desk)
     config = uvicorn.Config(
         app,

@@ -52,7 +52,7 @@ class Watched:
         return {
             "build": _stamp(self.build / "storyboard.json") + _stamp(self.build / "index.html"),
             "choices": self.choices(),
-            "stale": self._stale(),
+            "stale": self.is_stale(),
             "state": str(status.get("state", "done")),
             "message": str(status.get("message") or ""),
             "diagnostics": status.get("diagnostics") or [],
@@ -81,7 +81,8 @@ class Watched:
             out[shot] = choice.key if at is None else keys[at]
         return out
 
-    def _stale(self) -> bool:
+    def is_stale(self) -> bool:
+        """Whether the script is another than the build's."""
         script = self._once(self.file, self._script, "")
         built = self._once(self.build / "storyboard.json", _read_build, _NOTHING).script
         return bool(script and built and script != built)

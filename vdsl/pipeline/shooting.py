@@ -7,13 +7,14 @@ proposals are in memory at a time.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TypeVar
 
 import numpy as np
+from numpy.typing import NDArray
 
 from runtime.body.skeleton import JOINT
 
@@ -38,8 +39,8 @@ from .keys import code_digest, judge_digest, options_digest
 from .options import Options
 from .packing import PackError, pack, unpack
 from .progress import StageClock
-from .selection import choose_takes
-from .witness import counted, vet
+from .selection import choose_takes, further_takes
+from .witness import best, counted, vet
 
 T = TypeVar("T")
 UNITS = {"stage": "lines", "propose": "proposals", "draw": "frames", "rank": "frames", "film": "frames"}
@@ -96,7 +97,10 @@ class Judged:
 
 @dataclass(frozen=True, eq=False)
 class Run:
-    """What shots are made with. judge: asked for when somebody has to judge"""
+    """What shots are made with. judge: asked for when somebody has to judge
+
+    further: how many takes are wanted in all of shots of which there are to be more, by their ids
+    """
 
     storyboard: Storyboard
     options: Options
@@ -106,6 +110,7 @@ class Run:
     camerawork: Camerawork
     judge: Callable[[], Judge]
     clock: StageClock
+    further: Mapping[str, int] = field(default_factory=dict)
 
 
 class Shooting:
@@ -121,16 +126,29 @@ class Shooting:
     # -- judging -------------------------------------------------------------------------------
 
     def judged(self, line: StoryLine, shot: Shot) -> Judged:
-        """The shot's proposals in order."""
-        found = self.judged_before(line, shot)
-        if found is None:
-            found = self._judged_now(line, shot)
-            self._keep(self._judged_key(line, shot), found)
-        return found
+        """The shot's proposals in order, with the further takes that are wanted of it."""
+        found = self._judged_once(self._judged_key(line, shot), lambda: self._judged_now(line, shot))
+        more = self._more(shot)
+        if not more:
+            return found
+        key = self._further_key(line, shot)
+        return self._judged_once(key, lambda: self._further_now(line, shot, found, more))
 
     def judged_before(self, line: StoryLine, shot: Shot) -> Judged | None:
         """The same where it was kept, else None."""
-        return self._read(self._judged_key(line, shot), Judged)
+        key = self._further_key(line, shot) if self._more(shot) else self._judged_key(line, shot)
+        return self._read(key, Judged)
+
+    def _judged_once(self, key: str, judge: Callable[[], Judged]) -> Judged:
+        found = self._read(key, Judged)
+        if found is None:
+            found = judge()
+            self._keep(key, found)
+        return found
+
+    def _more(self, shot: Shot) -> int:
+        """How many takes are wanted beyond what the shot asks for."""
+        return max(0, self.run.further.get(shot.id, 0) - shot.takes)
 
     def one(
         self, line: StoryLine, shot: Shot, chosen: str, find: Callable[[ProposalGrid], int | None]
@@ -159,10 +177,10 @@ class Shooting:
         scores = self._scores(grid, act, line, shot)
         scores.look_at_best()
         edit, scene = self.run.options.edit, (act.staged, shot, act.filming)
+        count = CANDIDATES if edit else shot.takes
         while True:  # until all that is kept was looked at in full
             with self.run.clock.spent("vet", 1, quiet=True):
-                count = CANDIDATES if edit else shot.takes
-                vetted = vet(grid, scores.order, count, scene, self.run.camerawork)
+                vetted = vet(grid, scores.order, best(grid, count), scene, self.run.camerawork)
             takes = choose_takes(grid.cameras, vetted.order, shot.takes)
             failed = tuple(vetted.failed)
             some = candidates(grid.cameras, vetted.order, shot.takes, failed) if edit else takes[:1]
@@ -180,6 +198,30 @@ class Shooting:
             len(grid.story),
             _cameras_each(grid.cameras),
             grid.advice,
+        )
+
+    def _further_now(self, line: StoryLine, shot: Shot, known: Judged, count: int) -> Judged:
+        """What is known of a shot, with up to so many further takes behind those that it has: the next best
+        that look like none before them, and are what their line says."""
+        act, grid = self._act(line), self._proposed(line, shot)
+        scores, scene = self._scores(grid, act, line, shot), (act.staged, shot, act.filming)
+        scores.look_at_best()
+
+        def chosen(order: NDArray[np.float64], failed: Collection[int]) -> list[int]:
+            return further_takes(grid.cameras, order, known.takes, {*known.failed, *failed}, count)
+
+        while True:  # until all that is kept was looked at in full
+            with self.run.clock.spent("vet", 1, quiet=True):
+                vetted = vet(grid, scores.order, chosen, scene, self.run.camerawork)
+            found = chosen(vetted.order, vetted.failed)
+            if not scores.look(found):
+                break
+        kept = self._kept(line, shot, act, grid, scores, found)
+        return replace(
+            known,
+            takes=(*known.takes, *found),
+            failed={**known.failed, **vetted.failed},
+            kept={**known.kept, **kept},
         )
 
     def _proposed(self, line: StoryLine, shot: Shot) -> ProposalGrid:
@@ -322,6 +364,9 @@ class Shooting:
     def _judged_key(self, line: StoryLine, shot: Shot) -> str:
         how = (self._judge, shot.proposals, shot.takes, self.run.options.edit)
         return digest("judged", self._base(line, shot), how)
+
+    def _further_key(self, line: StoryLine, shot: Shot) -> str:
+        return digest("further", self._judged_key(line, shot), self._more(shot))
 
     def _film_key(self, line: StoryLine, shot: Shot, kept: Kept, strip: BurnIn | None) -> str:
         camera = replace(kept.camera, index=0, measures={})

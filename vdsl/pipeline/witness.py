@@ -10,7 +10,7 @@ way to the next best, where there are such.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -28,6 +28,8 @@ from ..stage.assemble import StagedScene
 from .filming import SEGMENTS, Camerawork, segment_frames, story_palettes
 from .selection import choose_takes
 
+#: Indices of proposals to keep, by scores [P] and by what has failed so far.
+Chosen = Callable[[NDArray[np.float64], Collection[int]], Sequence[int]]
 #: The reasons under which those that fail are counted, and the measure of those that were looked at.
 REASON, UNLIKE = "hidden_in_picture", "not_as_asked"
 MEASURE = "picture_visibility"
@@ -53,22 +55,28 @@ def counted(rejected: Mapping[str, int], failed: Mapping[int, str], kept: Sequen
     return dict(sorted((dict(rejected) | gone).items()))
 
 
+def best(grid: ProposalGrid, count: int) -> Chosen:
+    """The best so many, as takes are chosen."""
+    return lambda order, failed: choose_takes(grid.cameras, order, count)
+
+
 def vet(
     grid: ProposalGrid,
     scores: NDArray[np.float64],
-    count: int,
+    chosen: Chosen,
     scene: tuple[StagedScene, Shot, Filming],
     camerawork: Camerawork,
 ) -> Vetted:
     """Look at the takes about to be kept, and at those that would follow, until none more has to go.
 
+    chosen: gives those about to be kept, by the scores and by what has failed so far
     Notes the share of what was looked at among its measures.
     """
     order = np.asarray(scores, float).copy()
     looked: set[int] = set()
     failed: dict[int, str] = {}
     for _ in range(_ROUNDS):
-        fresh = [i for i in choose_takes(grid.cameras, order, count) if i not in looked]
+        fresh = [i for i in chosen(order, failed) if i not in looked]
         if not fresh:
             break
         looked.update(fresh)

@@ -51,6 +51,36 @@ function showRest(panel) {
   panel.querySelector(".rest")?.remove();
 }
 
+// --- more takes than there are --------------------------------------------------------------------
+
+const moreCommand = (shot) => `vdsc compile ${quoted(board.source)} --more ${quoted(shot.id)}`;
+
+/** Served they are drawn; from disk the command is told that draws them. */
+async function askMore(shot) {
+  const panel = panelOf(shot);
+  if (!panel.querySelector(".further")) return;
+  showRest(panel);
+  if (live.served) { await live.further(shot); return; }
+  let copied = "";
+  try { await navigator.clipboard.writeText(moreCommand(shot)); copied = " It is copied."; } catch { /* then it is marked by a click */ }
+  tellMore(shot, "", ["More takes are drawn by ", make("code", {}, moreCommand(shot)), `.${copied}`]);
+}
+
+/** What is said of a shot's further takes, on the board and in the viewing room. */
+function tellMore(shot, state, words) {
+  const busy = state === "drawing" || state === "waiting";
+  const box = panelOf(shot).querySelector(".drawing");
+  const said = JSON.stringify([state, words.map((word) => word.textContent ?? word)]);
+  if (box && box.dataset.said !== said) {
+    box.dataset.said = said;
+    box.hidden = !words.length;
+    box.classList.toggle("wrong", state === "error");
+    box.replaceChildren(...words);
+  }
+  panelOf(shot).querySelector(".further")?.setAttribute("aria-disabled", String(busy));
+  if (viewer.shot === shot) by("viewer-drawing").replaceChildren(...words.map((word) => word.cloneNode?.(true) ?? word));
+}
+
 /** Rings the takes that are chosen, on the board and in the viewing room. */
 function markChoices() {
   for (const panel of panels) {
@@ -83,6 +113,9 @@ for (const panel of panels) {
     button.addEventListener("click", () => { select(panel, false); showTake(panel, Number(button.dataset.take)); });
   }
   panel.querySelector(".rest")?.addEventListener("click", () => showRest(panel));
+  const further = panel.querySelector(".further");
+  if (further) further.hidden = false;
+  further?.addEventListener("click", () => { select(panel, false); askMore(shotOf(panel)); });
 }
 
 // --- where one is -------------------------------------------------------------------------------
@@ -179,6 +212,7 @@ function largeKey(event) {
   const keys = {
     ArrowLeft: () => viewer.seek(viewer.frame - step), ArrowRight: () => viewer.seek(viewer.frame + step),
     ArrowUp: () => viewer.turn(-1), ArrowDown: () => viewer.turn(1), " ": () => viewer.toggle(),
+    m: () => askMore(viewer.shot),
     c: () => (live.served ? live.choose(viewer.shot, viewer.take) : by("copy").click()),
   };
   if (event.key === " " && event.target.matches("button, a, summary") && event.target.id !== "play") return false;
@@ -191,6 +225,7 @@ function boardKey(event) {
   const keys = {
     ArrowLeft: () => move(-1), ArrowRight: () => move(1),
     " ": () => { if (!at) move(0); moving.isConnected && !moving.paused ? stop() : at && playIn(at); },
+    m: () => at && shotOf(at).takes.length && askMore(shotOf(at)),
     Enter: () => at && viewer.open(shotOf(at), takeOf.get(at.dataset.shot)),
   };
   const elsewhere = !event.target.closest(".frame") && event.target.matches("button, a, video, summary, input");

@@ -32,6 +32,24 @@ const live = {
     return this.change("/unchoose", { shot: shot.id }, "The ranking decides again, from the next compile on.");
   },
 
+  async further(shot) {
+    try {
+      this.drawn((await this.send("/further", { shot: shot.id })).further);
+    } catch (error) {
+      tellMore(shot, "error", [`No more takes: ${error.message}.`]);
+    }
+  },
+
+  /** What is being drawn: {shot: {state, message}}; what was told of other shots is over, but for mistakes. */
+  drawn(further) {
+    for (const panel of panels) {
+      const one = further[panel.dataset.shot];
+      const busy = one && (one.state === "drawing" || one.state === "waiting");
+      if (one) tellMore(shotOf(panel), one.state, [busy ? `More takes: ${one.message} …` : one.state === "error" ? `No more takes: ${one.message}.` : one.message]);
+      else if (panel.querySelector('.further[aria-disabled="true"]')) tellMore(shotOf(panel), "", []);
+    }
+  },
+
   take(chosen) {
     choices.clear();
     for (const [shot, key] of Object.entries(chosen)) choices.set(shot, key);
@@ -43,6 +61,7 @@ const live = {
     if (this.build !== null && state.build !== this.build) { this.again(); return; }
     this.build = state.build;
     this.take(state.choices);
+    this.drawn(state.further);
     this.say(state);
   },
 
@@ -70,6 +89,7 @@ const live = {
       y: scrollY, seen: seen?.dataset.shot, top: seen?.getBoundingClientRect().top, shot: viewer.isOpen ? viewer.shot.id : null, take: viewer.take?.rank, frame: viewer.isOpen ? viewer.frame : 0,
       playing: viewer.isOpen && !viewer.video.paused,
       filters: [...new FormData(filters)], at: at?.dataset.shot, film: film && !film.paused ? null : film?.currentTime,
+      open: panels.filter((panel) => !panel.querySelector(".rest")).map((panel) => panel.dataset.shot),
     }));
     history.scrollRestoration = "manual";
     location.reload();
@@ -82,6 +102,7 @@ const live = {
     if (!kept) return;
     for (const [name, value] of kept.filters) if (filters.elements[name]) filters.elements[name].value = value;
     look();
+    for (const panel of panels) if (kept.open.includes(panel.dataset.shot)) showRest(panel);
     const seen = panels.find((p) => p.dataset.shot === kept.seen);
     const shift = seen && kept.y > 40 ? seen.getBoundingClientRect().top + scrollY - kept.top : kept.y;
     scrollTo({ top: shift, behavior: "instant" });

@@ -69,10 +69,16 @@ const viewer = {
       button.addEventListener("click", () => this.show(this.shot, take));
       return button;
     }));
+    if (panelOf(this.shot).querySelector(".further")) {
+      const more = make("button", { type: "button", class: "further", "aria-label": "Draw more takes", title: "Draw more takes" }, "more");
+      more.addEventListener("click", () => askMore(this.shot));
+      by("takes").append(more);
+    }
+    by("viewer-drawing").replaceChildren(...[...panelOf(this.shot).querySelector(".drawing")?.childNodes || []].map((node) => node.cloneNode(true)));
   },
 
   markTake() {
-    [...by("takes").children].forEach((button, k) => {
+    [...by("takes").querySelectorAll("button:not(.further)")].forEach((button, k) => {
       const take = this.shot.takes[k];
       button.setAttribute("aria-pressed", String(take === this.take));
       button.classList.toggle("chosen", choices.get(this.shot.id) === take.key);
@@ -102,8 +108,7 @@ const viewer = {
       + (take.video ? "" : "; a draft, its film is being made");
     by("viewer-why").textContent = take.why[0].toUpperCase() + take.why.slice(1) + ".";
     by("viewer-track").href = take.track;
-    by("viewer-more").textContent = `${shot.takes.length} kept of ${shot.proposals} judged. For more: vdsc compile `
-      + `${quoted(board.source)} --takes ${Math.min(40, Math.max(10, 2 * shot.takes.length))}`;
+    by("viewer-more").textContent = `${shot.takes.length} kept of ${shot.proposals} judged.`;
     const row = (measure) => make("li", {}, make("span", { class: "mark", "aria-hidden": "true" }, measure.fine ? "✓" : "✕"),
       make("span", {}, measure.fine ? "" : make("span", { class: "aside" }, "not so: "), measure.words),
       make("span", { class: "value" }, measure.value));

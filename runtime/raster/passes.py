@@ -13,12 +13,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .device import Backend
+from .device import Backend, vectorised
 from .film import film_table, to_encoded, to_linear
 from .loaded import Loaded
 from .moments import Moments
 from .types import Style
 
+TURNS = 4  # shares of the work for each thread
 Buffers = Callable[[str, tuple[int, ...], type], Any]
 
 
@@ -44,8 +45,9 @@ class Passes:
     def __init__(self, backend: Backend, buffer: Buffers, style: Style) -> None:
         from .kernels import hatch, ink, paint, pattern, shading, smooth  # only now: they import taichi
 
-        self._buffer, self._style = buffer, style
+        self._backend, self._buffer, self._style = backend, buffer, style
         self._hatch, self._pattern, self._smooth = hatch, pattern, smooth
+        self._smooth_runs = vectorised(smooth.smooth_runs)
         self.SHADE: int = paint.SHADE
         self.shading = shading.shading_kernels(style)
         self._ink = ink.ink_kernels(style)
@@ -159,11 +161,29 @@ class Passes:
 
     def even_out(self, layer: Layer, color: NDArray[np.uint8], views: int, size: tuple[int, int]) -> None:
         """Smoothed bytes into ``color``."""
-        final = color.reshape(-1)
-        smooth = self._smooth.smooth_rows
-        if size[0] % 4 == 0:
-            final, smooth = final.view(np.uint32), self._smooth.smooth_words
-        smooth(layer.picture, layer.marks, layer.level, self.linear, self.table, final, views, *size)
+        final, runs = color.reshape(-1), (layer.marks, layer.level, self.linear, self.table)
+        if not self._backend.on_host or size[0] % self.run:
+            self._smooth.smooth_rows(layer.picture, *runs, final, views, *size)
+            return
+        run, kernels = self.run, self._smooth
+        workers = TURNS * self._backend.threads
+        scratch = self._buffer("smoothing", (workers * kernels.SCRATCH * run,), np.float32)
+        # the buffer may be longer, from a picture of another width
+        picture = layer.picture[: len(layer.picture) // run * run]
+        self._smooth_runs(
+            picture,
+            picture.view(np.int32).reshape(-1, run),
+            picture.view(np.uint8).reshape(-1, run),
+            *runs,
+            scratch.reshape(-1, run),
+            scratch.view(np.int32).reshape(-1, run),
+            scratch,
+            final,
+            final.reshape(-1, run),
+            views,
+            *size,
+            workers,
+        )
 
     def object_ids(self, loaded: Loaded, layer: Layer, objects: NDArray[np.int32]) -> None:
         """Which object each pixel shows, into ``objects`` [N, H, W]."""

@@ -91,15 +91,22 @@ class Renderer:
         objects = np.empty((count, height, width), np.int32) if ids else None
         far = np.empty((count, height, width), np.float32) if depth else None
         chunk = self._chunk(content, hidden, width * height)
+        several = len(np.unique(moment))
+        # moments that many views share are moved once for all chunks, if there is room for all of them
+        every = several < count and several * skinned(content, hidden) <= CHUNK_VERTICES
+        moved = slice(0)
         begin = 0
         while begin < count:
             part = slice(begin, min(count, begin + chunk))
             try:
-                used, local = np.unique(moment[part], return_inverse=True)
-                self._move(content, palettes[used] if len(palettes) else palettes, height, hidden[part])
+                if moved.stop < part.stop:
+                    moved = slice(begin, count) if every else part
+                    used, local = np.unique(moment[moved], return_inverse=True)
+                    local = local.reshape(-1).astype(np.int32)
+                    self._move(content, palettes[used] if len(palettes) else palettes, height, hidden[moved])
                 self._draw(
                     view[part],
-                    local.reshape(-1).astype(np.int32),
+                    local[begin - moved.start : part.stop - moved.start],
                     hidden[part],
                     (width, height),
                     color[part],
@@ -115,6 +122,7 @@ class Renderer:
                 self._most = min(chunk, self._most)
                 self._buffers.clear()
                 self._empty.forget()
+                moved, every = slice(0), False
                 continue
             begin = part.stop
         return Frames(color, objects, far)

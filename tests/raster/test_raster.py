@@ -193,6 +193,30 @@ def test_long_batches_are_cut_without_a_trace(monkeypatch: pytest.MonkeyPatch) -
     np.testing.assert_array_equal(draw(s, views).color, whole.color)
 
 
+def test_moments_that_views_share_are_moved_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    palettes = still(1, 3)
+    palettes[:, 0, 0, 3] = 0.0, -1.0, 0.6
+    views = looking(EYES[:1] * 5, AIMS[:1] * 5, moments=[2, 0, 2, 0, 2], walls=1)
+    drawer = Renderer("cpu", PLAIN)
+    drawer.load(small())
+    whole = drawer.render(palettes, views, ODD).color
+    moved: list[int] = []
+    move = drawer._moments.move
+
+    def counted(content, palettes, *rest) -> None:
+        moved.append(len(palettes))
+        move(content, palettes, *rest)
+
+    monkeypatch.setattr(drawer._moments, "move", counted)
+    monkeypatch.setattr("runtime.raster.renderer.CHUNK_PIXELS", 2 * ODD[0] * ODD[1])
+    np.testing.assert_array_equal(drawer.render(palettes, views, ODD).color, whole)
+    assert moved == [2]
+    moved.clear()
+    monkeypatch.setattr("runtime.raster.renderer.CHUNK_VERTICES", 1)  # no room for more than one
+    np.testing.assert_array_equal(drawer.render(palettes, views, ODD).color, whole)
+    assert moved == [1] * 5
+
+
 def test_people_throw_shadows_and_are_inked() -> None:
     s = scene(
         [box((-3, -3, -0.1), (3, 3, 0), (0.7, 0.7, 0.7))],

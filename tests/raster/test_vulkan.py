@@ -21,7 +21,7 @@ from runtime.raster.types import RenderScene, Style, Views
 
 HERE = Path(__file__).resolve()
 NO_DEVICE = 77  # exit status of a process that found none
-#: Widths that four divides and does not, and heights over no whole block.
+#: Widths that sixteen divides and does not, and heights over no whole block.
 SIZES = ((160, 90), (61, 47))
 
 

@@ -43,7 +43,15 @@ class Passes:
     """The passes of one style over one scene. run: pixels in a run; film, linear, table: tables of colours"""
 
     def __init__(self, backend: Backend, buffer: Buffers, style: Style) -> None:
-        from .kernels import hatch, ink, paint, pattern, shading, smooth  # only now: they import taichi
+        from .kernels import (
+            borders,
+            hatch,
+            ink,
+            paint,
+            pattern,
+            shading,
+            smooth,
+        )  # only now: they import taichi
 
         self._backend, self._buffer, self._style = backend, buffer, style
         self._hatch, self._pattern, self._smooth = hatch, pattern, smooth
@@ -51,6 +59,7 @@ class Passes:
         self.SHADE: int = paint.SHADE
         self.shading = shading.shading_kernels(style)
         self._ink = ink.ink_kernels(style)
+        self._borders = vectorised(borders.find_borders) if backend.on_host else None
         self.run: int = self.shading.RUN
         table = np.round(to_encoded(np.arange(4096) / 4095.0) * 255.0).astype(np.uint32)
         self.film = backend.upload(film_table())
@@ -141,23 +150,23 @@ class Passes:
 
     def draw_lines(self, loaded: Loaded, layer: Layer, view: Any, views: int, size: tuple[int, int]) -> None:
         """Ink, and marks where something ends."""
-        a = loaded.arrays
-        self._ink.rows(
-            view,
-            layer.picture,
-            layer.edge,
-            layer.vis,
-            layer.solid,
-            a["surface_object"],
-            a["one_color"],
-            loaded.scene.moving_surface,
-            self.linear,
-            self.table,
-            layer.marks,
-            layer.level,
-            views,
-            *size,
-        )
+        a, lookup = loaded.arrays, (self.linear, self.table)
+        first, kept = loaded.scene.moving_surface, (layer.marks, layer.level)
+        seen = (view, layer.picture, layer.edge, layer.vis)
+        if self._borders is None or size[0] % self.run:
+            named = (a["surface_object"], a["one_color"], first)
+            self._ink.rows(*seen, layer.solid, *named, *lookup, *kept, views, *size)
+            return
+        extent = (views, size[0] // self.run, size[1])
+        pixels = views * size[0] * size[1]
+        found = self._buffer("found", (3 * pixels // self.run,), np.int32)
+        vis, edge = layer.vis[:pixels], layer.edge[:pixels]
+        words, numbers = (vis.view(kind).reshape(-1, self.run) for kind in (np.int32, np.float32))
+        runs = (layer.solid, layer.level, first, self._style.outline, found, layer.marks)
+        self._borders(vis, words, numbers, edge.view(np.int32).reshape(-1, self.run), *runs, *extent)
+        if self._style.outline:
+            named = (a["surface_object"], a["one_color"], first)
+            self._ink.found(*seen, *named, *lookup, found, *kept, views, *size)
 
     def even_out(self, layer: Layer, color: NDArray[np.uint8], views: int, size: tuple[int, int]) -> None:
         """Smoothed bytes into ``color``."""

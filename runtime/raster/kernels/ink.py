@@ -71,6 +71,23 @@ def line_weight(e, f, w, w_f, w_back, first_moving, owner: ti.template()):
 
 
 @ti.func
+def quiet(k, b, y, blocks, height, width, solid: ti.template(), vis: ti.template()):
+    """Whether one triangle of the set is in all of block ``k``, the ``b``-th of row ``y``, and around it."""
+    whole = solid[k]
+    out = (
+        whole != 0
+        and (y == 0 or solid[k - blocks] == whole)
+        and (y == height - 1 or solid[k + blocks] == whole)
+    )
+    begin = (k - b) // blocks * width + b * BLOCK
+    if out and b > 0:
+        out = triangle(vis, begin - 1) + 1 == ti.max(whole, 0)
+    if out and b < blocks - 1:
+        out = triangle(vis, begin + BLOCK) + 1 == ti.max(whole, 0)
+    return out
+
+
+@ti.func
 def alone(x, y, at, width, height, vis: ti.template()):
     """Whether one triangle is at a pixel and all around it."""
     t = ti.cast(vis[at], ti.u32)
@@ -112,15 +129,16 @@ def level(e, f):
 
 @lru_cache(maxsize=8)
 def ink_kernels(style: Style) -> SimpleNamespace:
-    """The inking kernel of a style."""
+    """The inking kernels of a style."""
     outline = style.outline
     hatch = style.hatch
 
     @ti.func
-    def inked(
+    def draw(
         x,
         y,
         at,
+        ways,
         width,
         height,
         weight,
@@ -129,81 +147,56 @@ def ink_kernels(style: Style) -> SimpleNamespace:
         edge: ti.template(),
         vis: ti.template(),
         owner: ti.template(),
-        one_color: ti.template(),
         linear: ti.template(),
         table: ti.template(),
     ):
-        """Give a pixel its share of ink; returns whether something ends here.
+        """Give a pixel its share of ink.
 
-        weight: width in pixels of a line 1 m away
+        ways: a bit for each neighbour towards which there may be a line: left, right, above, below; weight:
+        width in pixels of a line 1 m away
         """
         e = edge[at]
         s = ti.cast(e >> 16, ti.i32)
         moves = s >= first_moving and e != ti.u32(NOTHING)
-        marked = True
-        near_line = True
-        if moves:
-            near_line = not even(x, y, at, width, height, True, edge, vis)
-            marked = near_line or one_color[s] == 0
-        else:
-            marked = not alone(x, y, at, width, height, vis)
-            near_line = (
-                marked and e != ti.u32(NOTHING) and not even(x, y, at, width, height, False, edge, vis)
-            )
-        if near_line:
-            left = at - 1 if x > 0 else at
-            right = at + 1 if x < width - 1 else at
-            above = at - width if y > 0 else at
-            below = at + width if y < height - 1 else at
-            w = nearness(vis, at)
-            broad = ti.min(ti.max(weight * w, 1.0), ti.max(1.0, height / 360.0))
-            ring = ti.Vector([left, right, above, below])
-            ink = 0.0
-            for k in ti.static(range(4)):
-                q = ring[k]
-                back = ring[k ^ 1]
+        w = nearness(vis, at)
+        broad = ti.min(ti.max(weight * w, 1.0), ti.max(1.0, height / 360.0))
+        ink = 0.0
+        for k in range(4):
+            if (ways >> k) & 1:
+                # how many pixels there are that way, and the other way
+                place, size = (x, width) if k < 2 else (y, height)
+                ahead = size - 1 - place if k & 1 else place
+                behind = size - 1 - ahead
+                step = (1 if k < 2 else width) * (1 if k & 1 else -1)
+                q = at + step if ahead > 0 else at
+                back = at - step if behind > 0 else at
                 w_q = nearness(vis, q)
                 w_back = nearness(vis, back)
                 f = edge[q]
-                if back == at or ((e ^ edge[back]) >> 16) != 0:
+                if behind == 0 or ((e ^ edge[back]) >> 16) != 0:
                     w_back = w - (w_q - w) if (e ^ f) >> 16 == 0 else w
                 if e != f or ti.abs(2 * w - w_back - w_q) > 0.03 * w * w:
                     ink = ti.max(ink, line_weight(e, f, w, w_q, w_back, first_moving, owner))
-                if moves and broad > 1.0 and ink < 0.9:
-                    far = 2 * q - at
-                    inside = True
-                    if ti.static(k == 0):
-                        inside = x > 1
-                    elif ti.static(k == 1):
-                        inside = x < width - 2
-                    elif ti.static(k == 2):
-                        inside = y > 1
-                    else:
-                        inside = y < height - 2
-                    if inside and (e ^ f) >> 16 == 0:
-                        g = edge[far]
-                        if (e ^ g) >> 16 != 0:
-                            share = ti.min(broad - 1.0, 1.0)
-                            ink = ti.max(
-                                ink,
-                                share * line_weight(f, g, w_q, nearness(vis, far), w, first_moving, owner),
-                            )
-            if ink > 0:
-                marked = True
-                c = decode(picture[at], linear)
-                if ti.static(hatch):
-                    ink = ti.min(1.0, ink * (1.15 if moves else 1.7))
-                # people: near black, a little of their colour; sets: a deeper shade of their own tint
-                line = c * 0.06 + vec3(0.006, 0.005, 0.009)
-                if not moves:
-                    line = c * 0.22 + vec3(0.02, 0.018, 0.022)
-                    ink *= ti.min(1.0, ti.static(0.62 if hatch else 0.35) + 2.6 * w)
-                else:
-                    ink *= ti.min(1.0, 0.5 + 5.0 * w)
-                if ti.static(hatch):
-                    line = vec3(0.006)
-                picture[at] = encode(c + (line - c) * ink, table)
-        return marked
+                if moves and broad > 1.0 and ink < 0.9 and ahead > 1 and (e ^ f) >> 16 == 0:
+                    g = edge[q + step]
+                    if (e ^ g) >> 16 != 0:
+                        share = ti.min(broad - 1.0, 1.0)
+                        far = nearness(vis, q + step)
+                        ink = ti.max(ink, share * line_weight(f, g, w_q, far, w, first_moving, owner))
+        if ink > 0:
+            c = decode(picture[at], linear)
+            if ti.static(hatch):
+                ink = ti.min(1.0, ink * (1.15 if moves else 1.7))
+            # people: near black, a little of their colour; sets: a deeper shade of their own tint
+            line = c * 0.06 + vec3(0.006, 0.005, 0.009)
+            if not moves:
+                line = c * 0.22 + vec3(0.02, 0.018, 0.022)
+                ink *= ti.min(1.0, ti.static(0.62 if hatch else 0.35) + 2.6 * w)
+            else:
+                ink *= ti.min(1.0, 0.5 + 5.0 * w)
+            if ti.static(hatch):
+                line = vec3(0.006)
+            picture[at] = encode(c + (line - c) * ink, table)
 
     @ti.kernel
     def ink_rows(
@@ -236,29 +229,88 @@ def ink_kernels(style: Style) -> SimpleNamespace:
                 k = line * blocks + b
                 if level[k] < INK:
                     continue
-                whole = solid[k]
-                quiet = (
-                    whole != 0
-                    and (y == 0 or solid[k - blocks] == whole)
-                    and (y == height - 1 or solid[k + blocks] == whole)
-                )
-                if quiet and b > 0:
-                    quiet = ti.cast(ti.cast(vis[line * width + b * BLOCK - 1], ti.u32), ti.i32) == ti.max(
-                        whole, 0
-                    )
-                if quiet and b < blocks - 1:
-                    quiet = triangle(vis, line * width + b * BLOCK + BLOCK) + 1 == ti.max(whole, 0)
                 bits = 0
-                if not quiet:
+                if not quiet(k, b, y, blocks, height, width, solid, vis):
                     for i in range(ti.min(BLOCK, width - b * BLOCK)):
                         x = b * BLOCK + i
                         at = line * width + x
                         marked = False
                         if ti.static(outline):
-                            marked = inked(
+                            e = edge[at]
+                            s = ti.cast(e >> 16, ti.i32)
+                            near = False
+                            if s >= first_moving and e != ti.u32(NOTHING):
+                                near = not even(x, y, at, width, height, True, edge, vis)
+                                marked = near or one_color[s] == 0
+                            else:
+                                marked = not alone(x, y, at, width, height, vis)
+                                near = marked and e != ti.u32(NOTHING)
+                                if near:
+                                    near = not even(x, y, at, width, height, False, edge, vis)
+                            if near:
+                                draw(
+                                    x,
+                                    y,
+                                    at,
+                                    15,
+                                    width,
+                                    height,
+                                    weight,
+                                    first_moving,
+                                    picture,
+                                    edge,
+                                    vis,
+                                    owner,
+                                    linear,
+                                    table,
+                                )
+                        else:
+                            marked = not alone(x, y, at, width, height, vis)
+                        if marked:
+                            bits |= 1 << i
+                marks[k] = bits
+
+    @ti.kernel
+    def ink_found(
+        view: f2,
+        picture: u32s,
+        edge: u32s,
+        vis: u64s,
+        owner: i1,
+        one_color: i1,
+        first_moving: ti.i32,
+        linear: f1,
+        table: u32s,
+        found: i32s,
+        marks: i32s,
+        level: i32s,
+        views: ti.i32,
+        width: ti.i32,
+        height: ti.i32,
+    ):
+        """As ink_rows, where :func:`borders.find_borders` said that lines may be; its marks are completed."""
+        for line in range(views * height):
+            weight = 0.0065 * view[line // height, 13]
+            y = line % height
+            blocks = width // BLOCK
+            for b in range(blocks):
+                k = line * blocks + b
+                if level[k] < INK:
+                    continue
+                beside, upright, moving = found[3 * k], found[3 * k + 1], found[3 * k + 2]
+                if (beside | upright | moving) != 0:
+                    bits = marks[k]
+                    for i in range(BLOCK):
+                        x = b * BLOCK + i
+                        at = line * width + x
+                        two, four = beside >> i & 0x10001, upright >> i & 0x10001
+                        if (two | four) != 0:
+                            ways = (two | two >> 15) & 3 | ((four | four >> 15) & 3) << 2
+                            draw(
                                 x,
                                 y,
                                 at,
+                                ways,
                                 width,
                                 height,
                                 weight,
@@ -267,14 +319,11 @@ def ink_kernels(style: Style) -> SimpleNamespace:
                                 edge,
                                 vis,
                                 owner,
-                                one_color,
                                 linear,
                                 table,
                             )
-                        else:
-                            marked = not alone(x, y, at, width, height, vis)
-                        if marked:
+                        elif (moving >> i) & 1 and one_color[ti.cast(edge[at] >> 16, ti.i32)] == 0:
                             bits |= 1 << i
-                marks[k] = bits
+                    marks[k] = bits
 
-    return SimpleNamespace(rows=ink_rows)
+    return SimpleNamespace(rows=ink_rows, found=ink_found)

@@ -183,6 +183,7 @@ class Light:
     sun: unit vector towards the key light; sun_color: its radiance; shadow: 0 none .. 1 black
     sky, ground: hemispheric ambient from above and below
     backdrop: (horizon, zenith) colours behind everything, sRGB 0..1
+    windows: how much the sun lightens what it falls on through windows, indoors
     lamps: how far what glows is turned up and lights its surroundings: 0 is off, 1 lamps at night
     """
 
@@ -192,6 +193,7 @@ class Light:
     ground: tuple[float, float, float]
     backdrop: tuple[tuple[float, float, float], tuple[float, float, float]]
     lamps: float = 0.0
+    windows: float = 0.0
 
 
 @dataclass(frozen=True, eq=False)

@@ -6,9 +6,11 @@ Assumes a valid scene. Everything here stays as it is until the next scene is lo
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from .bake import light_basis, occlusion_volume
 from .device import Backend
@@ -16,6 +18,7 @@ from .lamps import lamp_volume
 from .looks import glass_colors, packed_light, paper_level, paper_tones
 from .panes import Glass, divided
 from .prepare import Prepared, check, prepare
+from .sunlight import Sunlight, find_sunlight
 from .types import RenderScene, Style, people_of
 
 SET_SHADOW = 2048  # texels along the set's shadow map
@@ -64,10 +67,10 @@ class Loaded:
     """A scene on the device.
 
     scene: its flat arrays; arrays: those of them that kernels read, by name; glass: what is clear, None
-    without; shadow: the set's map; sheet, chart: what shading needs of each triangle of the set; lamps: light
-    of its lamps (``lamps.py``); cells: shape of the occlusion volume; columns, rows: of the
-    floor's cells; walls, people: how many can be left out; palette: matrices that a moment needs; paper:
-    brightness of the paper for hatching
+    without; shadow: the set's map; sheet, chart: what shading needs of each triangle of the set; lamps:
+    light of its lamps (``lamps.py``); sunlight: what falls through windows; cells: shape of the occlusion
+    volume; columns, rows: of the floor's cells; walls, people: how many can be left out; palette: matrices
+    that a moment needs; paper: brightness of the paper for hatching
     """
 
     scene: Prepared
@@ -77,6 +80,7 @@ class Loaded:
     sheet: Any
     chart: Chart
     lamps: Any
+    sunlight: Sunlight | None
     cells: tuple[int, int, int]
     columns: int
     rows: int
@@ -100,7 +104,7 @@ def loaded(scene: RenderScene, style: Style, backend: Backend, shading: Any) -> 
     prepared = prepare(opaque, style)
     arrays = _uploaded(prepared, opaque, style, backend)
     arrays["floor"], columns, rows = _floor(prepared, backend)
-    shadow = _set_shadow(prepared, arrays, style, backend)
+    shadow = _set_shadow(prepared, arrays, style, backend, prepared.set_casters)
     count = prepared.static_faces
     sheet = backend.buffer((2 * max(count, 1) * shading.SHEET,), np.float32)
     shading.fold(
@@ -116,9 +120,11 @@ def loaded(scene: RenderScene, style: Style, backend: Backend, shading: Any) -> 
     lamps = lamp_volume(
         opaque.static, opaque.static_object, scene.levels, scene.light.lamps, style, prepared.density, backend
     )
+    cast = partial(_set_shadow, prepared, arrays, style, backend)
+    sunlight = find_sunlight(prepared, arrays, opaque.light, style, backend, cast, chart)
     palette = int(opaque.joints.max()) + 1 if len(opaque.joints) else 0
     paper = paper_level(opaque.light)
-    surfaces, extent = (shadow, sheet, chart, lamps, prepared.density.values.shape), (columns, rows)
+    surfaces, extent = (shadow, sheet, chart, lamps, sunlight, prepared.density.values.shape), (columns, rows)
     return Loaded(prepared, arrays, glass, *surfaces, *extent, opaque.wall_count, people, palette, paper)
 
 
@@ -172,20 +178,22 @@ def _floor(prepared: Prepared, backend: Backend) -> tuple[Any, int, int]:
     return backend.upload(floor), columns, rows
 
 
-def _set_shadow(prepared: Prepared, arrays: dict[str, Any], style: Style, backend: Backend) -> ShadowMap:
-    """The shadow map of the set."""
+def _set_shadow(
+    prepared: Prepared, arrays: dict[str, Any], style: Style, backend: Backend, casting: NDArray[np.int32]
+) -> ShadowMap:
+    """The shadow map of triangles of the set."""
     from .kernels import light  # only now: it imports taichi
 
     size, up = SET_SHADOW, backend.upload
     frame = up(np.array([[1e6, 1e6, 100.0]], np.float32))  # no map: out of reach
-    if not len(prepared.set_casters) or not style.shadows:
+    if not len(casting) or not style.shadows:
         nothing = up(np.zeros(1, np.float32))
         return ShadowMap(1, frame, nothing, nothing)
     # only what casts, so that the map is not spent on the plain around
-    used, corners = np.unique(prepared.faces[prepared.set_casters], return_inverse=True)
+    used, corners = np.unique(prepared.faces[casting], return_inverse=True)
     vertices = up(prepared.vertices[used][None])
     faces = up(corners.reshape(-1, 3).astype(np.int32))
-    casters = up(np.arange(len(prepared.set_casters), dtype=np.int32))
+    casters = up(np.arange(len(casting), dtype=np.int32))
     depth = backend.buffer((size * size,), np.float32)
     coarse = backend.buffer((light.summary_size(size),), np.float32)
     spare = backend.buffer((light.summary_size(size),), np.float32)

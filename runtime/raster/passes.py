@@ -51,11 +51,13 @@ class Passes:
             pattern,
             shading,
             smooth,
+            sunlight,
         )  # only now: they import taichi
 
         self._backend, self._buffer, self._style = backend, buffer, style
         self._hatch, self._pattern, self._smooth = hatch, pattern, smooth
         self._smooth_runs = vectorised(smooth.smooth_runs)
+        self._sunlight = sunlight
         self.SHADE: int = paint.SHADE
         self.shading = shading.shading_kernels(style)
         self._ink = ink.ink_kernels(style)
@@ -137,6 +139,8 @@ class Passes:
             *size,
         )
         extent = (views, *size)
+        if loaded.sunlight is not None:
+            self._lay_sunlight(loaded, moments, layer, seen, size)
         if self._style.hatch:
             places = (a["vertices"], a["rest"], moments.position, a["faces"])
             counts = (scene.static_faces, loaded.static_vertices)
@@ -147,6 +151,28 @@ class Passes:
             kept = (layer.vis, layer.solid, layer.level, layer.picture)
             sheet = (loaded.sheet, scene.static_faces, self._lattice)
             self._pattern.grain_rows(view, *sheet, *kept, *extent)
+
+    def _lay_sunlight(
+        self,
+        loaded: Loaded,
+        moments: Moments,
+        layer: Layer,
+        seen: tuple[Any, Any, int],
+        size: tuple[int, int],
+    ) -> None:
+        """What falls through windows, over the shaded picture."""
+        sun, a, (view, moment, views) = loaded.sunlight, loaded.arrays, seen
+        assert sun is not None
+        self._sunlight.lay_sun(
+            view,
+            moment,
+            *(loaded.sheet, a["light"], sun.color, a["basis"]),
+            *(sun.shadow.frame, sun.shadow.size, sun.shadow.depth, sun.shadow.coarse),
+            *(moments.frame, moments.size, moments.depth, moments.coarse),
+            *(sun.plot, sun.begin, sun.side, sun.chart, sun.whole, loaded.scene.static_faces),
+            *(self.linear, self.table, layer.vis, layer.level, layer.picture),
+            *(views, *size),
+        )
 
     def draw_lines(self, loaded: Loaded, layer: Layer, view: Any, views: int, size: tuple[int, int]) -> None:
         """Ink, and marks where something ends."""

@@ -89,6 +89,15 @@ def compile_command(
         bool | None,
         typer.Option("--arrows/--no-arrows", help="Show on the sheet what moves.", show_default="arrows"),
     ] = None,
+    shutter: Annotated[
+        float | None,
+        typer.Option(
+            min=0,
+            max=360,
+            help="Motion blur of films: the shutter angle in degrees, 180 as in most films, 0 for none.",
+            show_default="0",
+        ),
+    ] = None,
     edit: Annotated[
         bool | None,
         typer.Option(
@@ -141,6 +150,7 @@ def compile_command(
         "weights": weights,
         "device": device.value if device else None,
         "burn_in": burn_in,
+        "shutter": shutter,
         "edit": edit,
         "arrows": arrows,
         "guides": drawn,

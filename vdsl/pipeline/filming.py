@@ -14,6 +14,7 @@ from runtime.raster.types import STYLES, Camera, Frames, Views
 from ..cinema.track import CameraTrack, camera_axes
 from ..propose.types import CameraProposal, StoryProposal
 from ..stage.assemble import StagedScene, palettes
+from .shutter import between, camera_between, exposed_frames, moments_needed
 
 #: The discriminator looks at this many frames of this size (the paper's section 3.3).
 SEGMENTS = 8
@@ -101,13 +102,19 @@ class Camerawork:
         story: StoryProposal,
         camera: CameraProposal,
         size: tuple[int, int],
+        shutter: float = 0.0,
     ) -> Iterator[NDArray[np.uint8]]:
-        """Every frame of a take in order, uint8 [H, W, 3]; the next few are drawn while one is used."""
+        """Every frame of a take in order, uint8 [H, W, 3]; the next few are drawn while one is used.
+
+        shutter: degrees that it is open, for motion blur; 0 for none
+        """
         renderer = self._renderer(staged, style)
         detail = _take_detail(renderer, staged, story, camera, size)
 
         def draw(begin: int) -> NDArray[np.uint8]:
             frames = np.arange(begin, min(begin + _FRAMES_A_LAUNCH, story.frames))
+            if shutter > 0:
+                return _blurred(renderer, staged, story, camera, size, frames, shutter, detail)
             hidden = np.repeat(not_drawn(staged, camera)[None], len(frames), axis=0)
             taken = _camera([(camera.track, frames)], optics=True)
             levels = np.repeat(detail, len(frames), axis=0)
@@ -176,6 +183,38 @@ def _take_detail(
         views = Views(_camera([(camera.track, at)]), np.arange(len(at), dtype=np.int32), hidden)
         finest.append(renderer.levels(story_palettes(staged, story, at), views, size).min(axis=0))
     return np.stack(finest).min(axis=0, keepdims=True)
+
+
+def _blurred(
+    renderer: Renderer,
+    staged: StagedScene,
+    story: StoryProposal,
+    camera: CameraProposal,
+    size: tuple[int, int],
+    frames: NDArray[np.integer],
+    shutter: float,
+    detail: NDArray[np.int32],
+) -> NDArray[np.uint8]:
+    """Some frames of a take as a shutter sees them, uint8 [F, H, W, 3]."""
+    first, last = max(int(frames[0]) - 1, 0), min(int(frames[-1]) + 1, story.frames - 1)
+    around = np.arange(first, last + 1)
+    poses = story_palettes(staged, story, around)
+    taken = _camera([(camera.track, around)], optics=True)
+    joints = [p.world_from_joint[around, :, :3, 3] for p in story.performances.values()]
+    props = [track[around, None, :3, 3] for track in story.props.values()]
+    moving = np.concatenate([np.zeros((len(around), 0, 3)), *joints, *props], axis=1)
+    hidden = not_drawn(staged, camera)[None]
+
+    def needed(ends: NDArray[np.float64]) -> int:
+        return moments_needed(camera_between(taken, ends - first), between(moving, ends - first), size)
+
+    def draw(at: NDArray[np.float64]) -> NDArray[np.uint8]:
+        seen, many = camera_between(taken, at - first), len(at)
+        moment = np.arange(many, dtype=np.int32)
+        views = Views(seen, moment, np.repeat(hidden, many, axis=0), np.repeat(detail, many, axis=0))
+        return renderer.render(between(poses, at - first), views, size).color
+
+    return exposed_frames(frames, story.frames, shutter, needed, draw)
 
 
 def first_frame(track: CameraTrack) -> Camera:

@@ -33,14 +33,15 @@ _CODE = (
 )
 #: Of the rest only what judges, films and encodes.
 _FILES = ("pipeline/acts", "pipeline/chosen", "pipeline/edit", "pipeline/filming", "pipeline/glance",
-          "pipeline/judging", "pipeline/packing", "pipeline/selection", "pipeline/shooting", "pipeline/takes",
-          "pipeline/witness", "emit/burnin", "emit/lettering", "emit/overlay", "emit/plan_ground",
-          "emit/typefaces", "emit/types", "emit/video", "emit/words")  # fmt: skip
+          "pipeline/judging", "pipeline/packing", "pipeline/selection", "pipeline/shooting",
+          "pipeline/shutter", "pipeline/takes", "pipeline/witness", "emit/burnin", "emit/lettering",
+          "emit/overlay", "emit/plan_ground", "emit/typefaces", "emit/types", "emit/video",
+          "emit/words")  # fmt: skip
 _ENDINGS = (".py", ".lark", ".vds")
 #: Options that decide neither what is proposed nor what is drawn, or are counted where they do.
 _ELSEWHERE = frozenset(
     {"settings", "weights", "rank", "burn_in", "guides", "edit", "cache", "draft", "arrows", "taste"}
-) | {"further"}
+) | {"further", "shutter"}
 
 
 @lru_cache(maxsize=1)

@@ -30,6 +30,7 @@ class Options:
     guides: what is drawn over every picture of the takes
     arrows: draw on the contact sheet what moves
     further: shots by their ids of which further takes are wanted
+    shutter: degrees that the shutter is open, for motion blur in films; 0 for none
     """
 
     settings: Settings = field(default_factory=Settings)
@@ -44,8 +45,13 @@ class Options:
     arrows: bool = True
     taste: Path | None = None
     further: tuple[str, ...] = ()
+    shutter: float = 0.0
 
     def __post_init__(self) -> None:
+        if not 0 <= self.shutter <= 360:
+            raise ValueError(
+                f"shutter: expected degrees from 0 (none) to 360, such as 180, got {self.shutter:g}"
+            )
         if self.rank not in JUDGES:
             raise ValueError(f"rank: expected one of {', '.join(JUDGES)}, got {self.rank!r}")
         if self.device not in DEVICES:

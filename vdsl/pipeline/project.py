@@ -31,13 +31,14 @@ else:
 
 NAME = "vds.toml"
 SETTINGS = ("fps", "size", "aspect", "seed", "rig", "style", "takes", "proposals", "aperture")
-#: What ``[compile]`` may say: a list of words, or yes and no.
+#: What ``[compile]`` may say: a list of words, yes and no, or degrees.
 COMPILE: Mapping[str, tuple[str, ...] | type] = {
     "device": ("auto", "cpu", "cuda", "vulkan"),
     "rank": ("discriminator", "geometry"),
     "edit": bool,
     "burn-in": bool,
     "arrows": bool,
+    "shutter": float,
 }
 _PLACE = re.compile(r"\(at line (\d+), column (\d+)\)")
 
@@ -123,6 +124,10 @@ def _compile(told: Any, source: Source, report: Report) -> dict[str, Any]:
         elif allowed is bool and not isinstance(value, bool):
             label = f"`{name}` cannot be this"
             report.error("VDS313", _at(name, source), label=label, help="it is true or false")
+        elif allowed is float and (type(value) not in (int, float) or not 0 <= value <= 360):
+            label = f"`{name}` cannot be this"
+            help = "it is an angle in degrees from 0 to 360, such as 180"
+            report.error("VDS313", _at(name, source), label=label, help=help)
     return dict(told)
 
 

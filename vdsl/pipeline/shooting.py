@@ -324,7 +324,9 @@ class Shooting:
         run, act = self.run, self.run.acts.act(line)
         story = self._story(line, shot, kept)
         size, fps = run.storyboard.size, run.storyboard.fps
-        frames = run.camerawork.take_frames(act.staged, shot.style, story, kept.camera, size)
+        frames = run.camerawork.take_frames(
+            act.staged, shot.style, story, kept.camera, size, run.options.shutter
+        )
         media = write_take(
             run.folder, shot.id, rank, frames, story.frames, fps, strip, run.options.guides, keyed=True
         )
@@ -371,9 +373,9 @@ class Shooting:
     def _film_key(self, line: StoryLine, shot: Shot, kept: Kept, strip: BurnIn | None) -> str:
         camera = replace(kept.camera, index=0, measures={})
         marks = [shot.id, strip.take, strip.start] if strip is not None else []
-        guides = self.run.options.guides
+        seen = (self.run.options.guides, self.run.options.shutter)
         track = digest(pack(camera).hex())
-        return digest("film", self._base(line, shot), track, kept.variant, kept.path, marks, guides)
+        return digest("film", self._base(line, shot), track, kept.variant, kept.path, marks, seen)
 
     def _read(self, key: str, kind: type[T]) -> T | None:
         data = self.run.cache.read(key)

@@ -22,6 +22,7 @@ class _Hour:
     """elevation, azimuth: of the key, degrees; backdrop: horizon and zenith
     glass, glass_share: what window panes show, and how much of it
     lamps: how far what glows is turned up; by day, and in the open, it does not show
+    windows: how much the sun lightens what it falls on through a window
     """
 
     elevation: float
@@ -33,6 +34,7 @@ class _Hour:
     glass: Colour
     glass_share: float
     lamps: float = 0.0
+    windows: float = 0.0
 
 
 _OUTDOORS = {
@@ -50,11 +52,11 @@ _OUTDOORS = {
 #: late hours is warm and its fill cool, so that floor, walls and people keep their own colours.
 _INDOORS = {
     "dawn": _Hour(46, 70, (0.84, 0.70, 0.46), (0.97, 1.00, 1.07), (0.93, 0.90, 0.88),
-                  ((0.94, 0.93, 0.92), (0.94, 0.93, 0.92)), (1.0, 0.92, 0.82), 0.7, 0.35),
-    "day": _Hour(52, 235, (0.70, 0.66, 0.56), (1.12, 1.11, 1.10), (1.04, 1.00, 0.94),
-                 ((0.93, 0.93, 0.92), (0.93, 0.93, 0.92)), (0.90, 0.95, 0.97), 0.0),
+                  ((0.94, 0.93, 0.92), (0.94, 0.93, 0.92)), (1.0, 0.92, 0.82), 0.7, 0.35, 0.7),
+    "day": _Hour(46, 235, (0.70, 0.66, 0.56), (1.12, 1.11, 1.10), (1.04, 1.00, 0.94),
+                 ((0.93, 0.93, 0.92), (0.93, 0.93, 0.92)), (0.90, 0.95, 0.97), 0.0, 0.0, 0.8),
     "dusk": _Hour(42, 200, (1.02, 0.73, 0.36), (0.74, 0.82, 0.97), (0.78, 0.75, 0.75),
-                  ((0.90, 0.88, 0.88), (0.90, 0.88, 0.88)), (0.98, 0.80, 0.62), 0.7, 0.7),
+                  ((0.90, 0.88, 0.88), (0.90, 0.88, 0.88)), (0.98, 0.80, 0.62), 0.7, 0.7, 0.8),
     "night": _Hour(64, 215, (1.04, 0.78, 0.46), (0.46, 0.51, 0.64), (0.44, 0.43, 0.46),
                    ((0.34, 0.36, 0.45), (0.34, 0.36, 0.45)), (0.18, 0.23, 0.38), 0.92, 1.0),
 }  # fmt: skip
@@ -119,7 +121,7 @@ def make_light(definition: SetDef, time: str, room: tuple[str, ...] = ()) -> Lig
         math.sin(azimuth) * math.cos(elevation),
         math.sin(elevation),
     )
-    return Light(sun, hour.sun, hour.sky, hour.ground, hour.backdrop, hour.lamps)
+    return Light(sun, hour.sun, hour.sky, hour.ground, hour.backdrop, hour.lamps, hour.windows)
 
 
 def by_lamplight(light: Light, outdoor: bool) -> Light:

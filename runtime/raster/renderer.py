@@ -20,6 +20,7 @@ from .device import Backend, start
 from .empty import EmptySets
 from .glazing import Glazing, merged
 from .loaded import Loaded, loaded
+from .memory import budget, bytes_of_moment, bytes_of_view
 from .moments import Moments
 from .optics import Lens, lens_of
 from .passes import Passes
@@ -27,10 +28,6 @@ from .pool import Pool
 from .types import Frames, RenderScene, Style, Views
 from .views import check_levels, check_moments, left_out, pack_views, with_other_levels
 from .visibility import Visibility
-
-CHUNK_PIXELS = 8_000_000  # pixels in flight; about 30 bytes each
-CHUNK_VERTICES = 2_000_000  # skinned vertices in flight; about 50 bytes each
-CHUNK_TRIANGLES = 4_000_000  # triangles of views in flight; 48 bytes for each that is seen
 
 
 class Renderer:
@@ -45,6 +42,7 @@ class Renderer:
         self.serial = self.backend.on_host  # one thread a band of a view, no atomics
         self._buffers: dict[str, Any] = {}
         self._most = 1 << 20  # views at a time; fewer once memory has run out
+        self.budget = 0  # bytes that the views drawn at a time may take, from :meth:`load` on
         self._pool = Pool()
         self._passes = Passes(self.backend, self._buffer, self.style)
         self._plain = Plain(self.backend, self._buffer, self._passes.film) if self.style.plain else None
@@ -66,6 +64,7 @@ class Renderer:
         if content.glass is not None and self._plain is None:
             self._glazing = Glazing(self.backend, self._buffer, content, content.glass)
         self._loaded = content
+        self.budget = budget(self.backend)
 
     def render(
         self,
@@ -90,10 +89,11 @@ class Renderer:
         color = self._pool.bytes((count, height, width, 3))
         objects = np.empty((count, height, width), np.int32) if ids else None
         far = np.empty((count, height, width), np.float32) if depth else None
-        chunk = self._chunk(content, hidden, width * height)
+        chunk = self._chunk(content, hidden, (width, height))
         several = len(np.unique(moment))
         # moments that many views share are moved once for all chunks, if there is room for all of them
-        every = several < count and several * skinned(content, hidden) <= CHUNK_VERTICES
+        room = bytes_of_moment(content, height, skinned(content, hidden))
+        every = several < count and several * room <= self.budget
         moved = slice(0)
         begin = 0
         while begin < count:
@@ -154,12 +154,10 @@ class Renderer:
             chosen = check_levels(views.detail, len(moment), detail)
         return view, moment, with_other_levels(hidden, detail, chosen, content.walls)
 
-    def _chunk(self, content: Loaded, hidden: NDArray[np.int32], pixels: int) -> int:
-        """How many views of so many pixels are drawn at a time."""
-        vertices = max(skinned(content, hidden), 1)
-        triangles = max(len(content.scene.faces), 1)
-        bounds = (CHUNK_PIXELS // pixels, CHUNK_VERTICES // vertices, CHUNK_TRIANGLES // triangles)
-        return max(1, min(self._most, *bounds))
+    def _chunk(self, content: Loaded, hidden: NDArray[np.int32], size: tuple[int, int]) -> int:
+        """How many views of ``size`` are drawn at a time."""
+        each = bytes_of_view(content, size, self._passes.run, skinned(content, hidden))
+        return max(1, min(self._most, self.budget // each))
 
     def _buffer(self, name: str, shape: tuple[int, ...], dtype: type) -> Any:
         """A buffer at least as large as asked for (flat ones) or of that shape, kept for the next time."""

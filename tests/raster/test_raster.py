@@ -189,7 +189,7 @@ def test_the_plain_look_is_smooth_shading_and_knows_what_it_sees() -> None:
 def test_long_batches_are_cut_without_a_trace(monkeypatch: pytest.MonkeyPatch) -> None:
     s, views = small(), looking(EYES, AIMS, walls=1)
     whole = draw(s, views)
-    monkeypatch.setattr("runtime.raster.renderer.CHUNK_PIXELS", ODD[0] * ODD[1])
+    monkeypatch.setattr("runtime.raster.renderer.budget", lambda backend: 1)
     np.testing.assert_array_equal(draw(s, views).color, whole.color)
 
 
@@ -208,11 +208,11 @@ def test_moments_that_views_share_are_moved_once(monkeypatch: pytest.MonkeyPatch
         move(content, palettes, *rest)
 
     monkeypatch.setattr(drawer._moments, "move", counted)
-    monkeypatch.setattr("runtime.raster.renderer.CHUNK_PIXELS", 2 * ODD[0] * ODD[1])
+    drawer._most = 2  # views at a time
     np.testing.assert_array_equal(drawer.render(palettes, views, ODD).color, whole)
     assert moved == [2]
     moved.clear()
-    monkeypatch.setattr("runtime.raster.renderer.CHUNK_VERTICES", 1)  # no room for more than one
+    drawer.budget = 1  # no room for more than one
     np.testing.assert_array_equal(drawer.render(palettes, views, ODD).color, whole)
     assert moved == [1] * 5
 

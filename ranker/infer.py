@@ -1,8 +1,9 @@
 """Scores for shot proposals, as fast as the machine allows.
 
-On a CPU the backbone runs with batch norm folded into the convolutions, in bfloat16 and channels
-last, as a frozen graph; fusion and heads stay in float32. Pictures go through in batches of one
-fixed size, the last one padded, so that a shot's score does not depend on its company.
+The backbone runs with batch norm folded into the convolutions, channels last: in eight-bit integers where
+the processor is good at that and the weights come with what it needs, else in bfloat16, on a CPU as a frozen
+graph. Fusion and heads stay in float32. Pictures go through in batches of one fixed size, the last one
+padded, so that a shot's score does not depend on its company.
 """
 
 from __future__ import annotations
@@ -20,14 +21,18 @@ from torch import Tensor, nn
 from torch.nn.utils.fusion import fuse_conv_bn_eval
 
 from .config import ModelConfig
+from .engine import has_vnni
 from .errors import RankerError
+from .int8 import Int8Backbone, Ranges
 from .model import Output, ShotRanker, frame_times, normalised
-from .weights import load_model
+from .weights import load_model, load_ranges
 
 #: Shots in a batch. On a CPU more are hardly quicker, and bfloat16 convolutions round differently at
 #: different places of a batch.
 CPU_BATCH, CUDA_BATCH = 1, 32
 CPU_THREADS = 2
+#: Pictures uint8 [N, S, S, 3] -> features float32 [N, D], for one fixed N.
+Encoder = Callable[[Tensor], Tensor]
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,9 +53,12 @@ class Scores:
 
 
 class Ranker:
-    """A loaded ranker; ``config`` holds its words. Make one with :meth:`load` and keep it."""
+    """A loaded ranker; ``config`` holds its words. Make one with :meth:`load` and keep it.
 
-    def __init__(self, model: ShotRanker, device: str = "auto") -> None:
+    ranges: of the network's outputs, which computing in eight bits needs; engine: ``int8`` or ``bfloat16``
+    """
+
+    def __init__(self, model: ShotRanker, device: str = "auto", ranges: Ranges | None = None) -> None:
         self.config: ModelConfig = model.config
         self.device = _device(device)
         self._batch = CPU_BATCH if self.device.type == "cpu" else CUDA_BATCH
@@ -58,12 +66,16 @@ class Ranker:
             torch.set_num_threads(CPU_THREADS)
         self._model = model.eval().requires_grad_(False).to(self.device)
         self._times = frame_times(self.config).to(self.device)
-        self._features = self._backbone()
+        folded = fold_batch_norm(self._model.backbone)
+        eight = self._eight(folded, ranges)
+        self.engine = "bfloat16" if eight is None else "int8"
+        self._features = eight or self._sixteen(folded)
 
     @classmethod
     def load(cls, path: str | Path | None = None, device: str = "auto") -> Ranker:
         """The weights in the folder ``path``, or the shipped ones; raises :class:`RankerError`."""
-        return cls(load_model(path)[0], device)
+        model, card = load_model(path)
+        return cls(model, device, load_ranges(path, model, card))
 
     def score(self, frames: NDArray[np.uint8]) -> Scores:
         """Judge shots: uint8 [P, frames, size, size, 3] sRGB, frames evenly spaced from first to last."""
@@ -101,8 +113,7 @@ class Ranker:
         room, count = self._batch * self.config.frames, len(pictures)
         padded = np.zeros((room, *pictures.shape[1:]), np.uint8)
         padded[:count] = pictures
-        flat = normalised(torch.from_numpy(padded).to(self.device)).to(torch.bfloat16)
-        return self._features(flat.contiguous(memory_format=torch.channels_last)).float()[:count]
+        return self._features(torch.from_numpy(padded).to(self.device))[:count]
 
     @torch.inference_mode()
     def _score(self, frames: NDArray[np.uint8]) -> Scores:
@@ -111,12 +122,27 @@ class Ranker:
         features = features.view(count, self.config.frames, self._model.width)
         return _scores(self._model.judge(features, self._times.expand(count, -1)))
 
-    def _backbone(self) -> Callable[[Tensor], Tensor]:
-        """The frame encoder for one fixed batch: bfloat16 pictures [N, 3, S, S] -> features [N, D]."""
-        backbone = fold_batch_norm(self._model.backbone).to(torch.bfloat16)
-        backbone = backbone.to(memory_format=torch.channels_last)  # type: ignore[call-overload]
-        if self.device.type != "cpu":
-            return backbone
+    def _eight(self, folded: nn.Module, ranges: Ranges | None) -> Encoder | None:
+        """The frame encoder in eight bits, None where that cannot be or would not be quicker."""
+        if ranges is None or self.device.type != "cpu" or not has_vnni():
+            return None
+        try:
+            return Int8Backbone(folded, ranges, self._batch * self.config.frames, self.config.size)
+        except (AttributeError, RuntimeError):  # a torch without the operators
+            return None
+
+    def _sixteen(self, folded: nn.Module) -> Encoder:
+        """The frame encoder in bfloat16."""
+        backbone = folded.to(torch.bfloat16).to(memory_format=torch.channels_last)  # type: ignore[call-overload]
+        network = self._frozen(backbone) if self.device.type == "cpu" else backbone
+
+        def encode(pictures: Tensor) -> Tensor:
+            flat = normalised(pictures).to(torch.bfloat16)
+            return network(flat.contiguous(memory_format=torch.channels_last)).float()
+
+        return encode
+
+    def _frozen(self, backbone: nn.Module) -> Callable[[Tensor], Tensor]:
         example = torch.zeros(self._batch * self.config.frames, 3, self.config.size, self.config.size)
         example = example.to(torch.bfloat16).contiguous(memory_format=torch.channels_last)
         with torch.inference_mode(), warnings.catch_warnings():

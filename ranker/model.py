@@ -16,8 +16,9 @@ from torch.nn import functional
 from .config import ModelConfig
 from .vision import torchvision_models
 
-_MEAN = (0.485, 0.456, 0.406)
-_STD = (0.229, 0.224, 0.225)
+#: Of sRGB in 0..1, by channel, as ResNets are used to.
+PIXEL_MEAN = (0.485, 0.456, 0.406)
+PIXEL_STD = (0.229, 0.224, 0.225)
 
 
 class Output(NamedTuple):
@@ -89,8 +90,8 @@ def fuse(features: Tensor, times: Tensor) -> Tensor:
 
 def normalised(frames: Tensor) -> Tensor:
     """uint8 [..., H, W, 3] sRGB -> float32 [..., 3, H, W] as ResNets are used to."""
-    mean = torch.tensor(_MEAN, device=frames.device) * 255
-    std = torch.tensor(_STD, device=frames.device) * 255
+    mean = torch.tensor(PIXEL_MEAN, device=frames.device) * 255
+    std = torch.tensor(PIXEL_STD, device=frames.device) * 255
     return ((frames.float() - mean) / std).movedim(-1, -3)
 
 

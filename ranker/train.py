@@ -28,11 +28,15 @@ from .curves import draw_curves
 from .data import Dataset
 from .dictionary import Dictionary, follow, momentum_copy
 from .errors import RankerError
-from .evaluate import evaluate, mean
+from .evaluate import agreement_with_fp32, evaluate, mean
+from .infer import Ranker, fold_batch_norm
+from .int8 import Ranges, measured_ranges
 from .losses import binary_loss, class_loss, contrast_loss
 from .model import ShotRanker, frame_times, normalised
-from .weights import save_weights
+from .weights import load_model, save_weights
 
+#: Clips by which eight bits are fitted, and by which they are compared with float32.
+_MEASURED, _COMPARED = 64, 200
 Report = Callable[[dict[str, Any]], None]
 
 
@@ -123,11 +127,32 @@ def train(
 
         # Small pictures leave batch norm with the wrong statistics for full ones.
         calibrate(model, data, learn, config, device)
-        measured = evaluate(model.cpu(), data, held) if len(held) else {"clips": 0}
+        ranges = int8_ranges(model.cpu(), data, learn, config.seed)
+        save_weights(out / "weights", model, ranges=ranges)
+
+        # Measured as it will be used: from the disk.
+        measured: dict[str, Any] = {"clips": 0}
+        if len(held):
+            ranker, model = Ranker.load(out / "weights", "cpu"), load_model(out / "weights")[0]
+            some = np.random.default_rng(config.seed).permutation(held)[:_COMPARED]
+            measured = evaluate(ranker, data, held)
+            measured |= {
+                "engine": ranker.engine,
+                "spearman_fp32": agreement_with_fp32(model, ranker, data, some),
+            }
         _tell(log, {"measured": measured}, report)
 
-    save_weights(out / "weights", model, training=to_json(config), data=data.about(), measured=measured)
+    about = {"training": to_json(config), "data": data.about(), "measured": measured}
+    save_weights(out / "weights", model, **about, ranges=ranges)
     return measured
+
+
+def int8_ranges(model: ShotRanker, data: Dataset, clips: NDArray[np.int64], seed: int = 0) -> Ranges:
+    """What computing in eight bits needs to know of a network: its outputs on some of the clips."""
+    some = np.random.default_rng(seed).permutation(clips)[:_MEASURED]
+    size, at = model.config.size, (0, data.frames // 2)
+    pictures = [normalised(torch.from_numpy(data.clip(int(i), at, size))) for i in some]
+    return measured_ranges(fold_batch_norm(model.backbone), pictures)
 
 
 def learning_rate(config: TrainConfig, step: int, steps: int) -> float:

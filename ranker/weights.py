@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+import math
 import os
 from pathlib import Path
 from typing import Any
@@ -17,13 +18,17 @@ from safetensors import SafetensorError
 from safetensors.torch import load, save
 
 from .config import Card, ModelConfig, model_from_json, to_json
+from .engine import INT8
 from .errors import RankerError
+from .int8 import Ranges, layers_of
 from .model import ShotRanker
 
 WEIGHTS, CONFIG = "model.safetensors", "config.json"
 SHIPPED = Path(__file__).parent / "weights"
 SCHEMA = "vds.ranker/1"
+INT8_SCHEMA = "vds.ranker-int8/1"
 _GO_ON = "; `--rank geometry` goes on without the ranker"
+_WITHOUT = "; `vdsc train` writes it anew, and without it the ranker is only slower"
 
 
 def save_weights(
@@ -33,8 +38,12 @@ def save_weights(
     training: dict[str, Any] | None = None,
     data: dict[str, Any] | None = None,
     measured: dict[str, Any] | None = None,
+    ranges: Ranges | None = None,
 ) -> Card:
-    """Write ``model.safetensors`` (float16; vectors stay float32) and ``config.json`` into the folder."""
+    """Write ``model.safetensors`` (float16; vectors stay float32) and ``config.json`` into the folder.
+
+    ranges: for computing in eight bits, into ``int8.json``; without them one that is there goes
+    """
     folder = Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
     tensors = {
@@ -46,8 +55,40 @@ def save_weights(
     card = Card(model.config, hashlib.sha256(content).hexdigest(), training or {}, data or {}, measured or {})
     _replace(folder / WEIGHTS, content)
     text = json.dumps({"schema": SCHEMA, **to_json(card)}, indent=1, ensure_ascii=False)
+    (folder / INT8).unlink(missing_ok=True)
     _replace(folder / CONFIG, (text + "\n").encode())
+    if ranges is not None:
+        save_ranges(folder, ranges, card)
     return card
+
+
+def save_ranges(folder: str | Path, ranges: Ranges, card: Card) -> None:
+    """Write ``int8.json`` beside the weights it was measured with."""
+    found = {name: [float(f"{end:.6g}") for end in ends] for name, ends in ranges.items()}
+    values = {"schema": INT8_SCHEMA, "weights": card.sha256, "ranges": found}
+    _replace(Path(folder) / INT8, (json.dumps(values, indent=1) + "\n").encode())
+
+
+def load_ranges(folder: str | Path | None, model: ShotRanker, card: Card) -> Ranges | None:
+    """What computing in eight bits needs of these weights; None where it was never measured."""
+    path = Path(folder or SHIPPED) / INT8
+    try:
+        values = json.loads(path.read_text("utf-8"))
+        if values["schema"] != INT8_SCHEMA:
+            raise ValueError
+        if values["weights"] != card.sha256:
+            raise RankerError(f"{path}: was measured with other weights{_WITHOUT}")
+        ranges = {name: (float(low), float(high)) for name, (low, high) in values["ranges"].items()}
+        fit = all(-math.inf < low <= 0 < high < math.inf for low, high in ranges.values())
+        if not fit or list(ranges) != layers_of(model.backbone):
+            raise ValueError
+        return ranges
+    except FileNotFoundError:
+        return None
+    except OSError as error:
+        raise RankerError(f"{path}: cannot be read: {error.strerror or error}{_WITHOUT}") from error
+    except (ValueError, KeyError, TypeError, AttributeError) as error:
+        raise RankerError(f"{path}: is damaged, or not of this model{_WITHOUT}") from error
 
 
 def load_card(folder: str | Path | None = None) -> Card:

@@ -16,12 +16,15 @@ from vdsl.lang import Report, Source
 from vdsl.lang.ir import ALL_ANGLES, FURTHER_MOVEMENTS, MOVEMENTS, SIZES
 from vdsl.library import Catalog
 from vdsl.pipeline.acts import stage_acts
-from vdsl.pipeline.casting import Troupe, split_of_story
+from vdsl.pipeline.casting import Scene, Troupe, split_of_story
+from vdsl.pipeline.clips import Clip, clips_of
 from vdsl.pipeline.dataset import generate
+from vdsl.pipeline.designer import judged, picks
 from vdsl.pipeline.labels import WORDS, classes
 from vdsl.pipeline.perturb import mistyped, perturbed
 from vdsl.pipeline.script import check_source
 from vdsl.pipeline.stories import places, random_story, split_of
+from vdsl.propose.cameras import measured_anew
 from vdsl.propose.story import tell
 
 
@@ -140,6 +143,62 @@ scene here = farmyard.yard at day
 """
     for act in stage_acts(check_source(Source("<story>", text))):  # once an IndexError
         assert tell(act.state, act.line, act.filming).proposals
+
+
+@pytest.fixture(scope="module")
+def scenes() -> list[Scene]:
+    """Lines with proposals the designer likes some of."""
+    found: list[Scene] = []
+    for number in range(12):
+        found += Troupe(seed=4, lines=1, cameras=2).scenes(number, 16)
+        if sum(len(picks(grid.cameras, 4)) for scene in found for grid in scene.grids) >= 6:
+            break
+    return found
+
+
+def test_a_track_measured_anew_measures_the_same(scenes: list[Scene]) -> None:
+    compared = 0
+    for scene in scenes:
+        for shot, grid in zip(scene.shots, scene.grids, strict=True):
+            for story in grid.story:
+                cameras = [c for c in grid.cameras if c.story == story.index]
+                for before, after in zip(
+                    cameras, measured_anew(shot, story, scene.filming, cameras), strict=True
+                ):
+                    assert after.measures == pytest.approx(before.measures, abs=1e-9)
+                    np.testing.assert_array_equal(after.hidden_walls, before.hidden_walls)
+                    compared += 1
+    assert compared > 20
+
+
+def test_negatives_are_truly_worse_and_labels_are_what_the_track_shows(scenes: list[Scene]) -> None:
+    found = [clip for n, scene in enumerate(scenes) for clip in clips_of(scene, np.random.default_rng(n))]
+    good = [clip for clip in found if clip.kind == "designer"]
+    bad = [clip for clip in found if clip.kind != "designer"]
+    assert len(good) == len(bad) >= 5
+    assert all(clip.words == classes(*_asked(clip)) for clip in good)
+    for clip, other in zip(good, _partners(found), strict=True):
+        worse = judged([other.camera])[0] < judged([clip.camera])[0]
+        assert worse or other.words != clip.words
+        assert other.camera.measures != clip.camera.measures
+        assert all(word in (None, own) for word, own in zip(other.words, clip.words, strict=True))
+    assert np.mean([judged([clip.camera])[0] < 0 for clip in bad]) > 0.5
+    assert all(0.1 <= clip.strength <= 1 for clip in bad)
+
+
+def _asked(clip: Clip) -> tuple[str, str, str]:
+    return clip.camera.movement, clip.camera.scale, clip.camera.angle
+
+
+def _partners(found: list[Clip]) -> list[Clip]:
+    """Of every good one, in order, the one spoilt of it: each shot's good ones come before its bad ones."""
+    return [clip for clip in found if clip.kind != "designer"]
+
+
+def test_what_does_not_get_worse_is_no_negative(scenes: list[Scene], monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("vdsl.pipeline.clips.perturbed", lambda track, strength, rng: track)
+    monkeypatch.setattr("vdsl.pipeline.clips.mistyped", lambda track, rng: track)
+    assert [clip for scene in scenes for clip in clips_of(scene, np.random.default_rng(0))] == []
 
 
 def test_a_training_set_is_half_good_and_goes_on_where_it_stopped(

@@ -13,7 +13,8 @@ from dataclasses import dataclass, replace
 from ..lang import Report, Settings, Source
 from ..lang.ir import Shot
 from ..library import Catalog
-from ..propose.story import film, tell
+from ..propose.story import as_filmed, film, tell
+from ..propose.subjects import Filming
 from ..propose.types import ProposalGrid
 from ..stage.assemble import StagedScene
 from .acts import stage_acts
@@ -31,7 +32,7 @@ _CAMERAS = 4
 class Scene:
     """A performed line with the proposals of its shots, which share the performances.
 
-    split: ``train`` or ``test``; place: set and room; cast: who plays
+    split: ``train`` or ``test``; place: set and room; cast: who plays; filming: what its cameras know
     """
 
     number: int
@@ -41,6 +42,7 @@ class Scene:
     staged: StagedScene
     shots: tuple[Shot, ...]
     grids: tuple[ProposalGrid, ...]
+    filming: Filming
 
 
 class Troupe:
@@ -86,7 +88,9 @@ class Troupe:
             told = tell(act.state, act.line, act.filming, shot=act.line.shots[0])
             shots = tuple(replace(shot, proposals=proposals) for shot in act.line.shots)
             grids = tuple(film(told, shot, act.state, act.filming) for shot in shots)
-            yield Scene(number, side, f"{place.set}.{place.room}", cast, act.staged, shots, grids)
+            filming = as_filmed(told, act.state, act.filming)
+            where = f"{place.set}.{place.room}"
+            yield Scene(number, side, where, cast, act.staged, shots, grids, filming)
 
 
 def split_of_story(number: int) -> str:

@@ -1,8 +1,8 @@
 """The discriminator's training set: random stories, filmed well and filmed badly.
 
 Positives are what the virtual designer picks of a shot's proposals (:mod:`vdsl.pipeline.designer`);
-negatives are picks shaken about at graded strengths, and picks made to show no type
-(:mod:`vdsl.pipeline.perturb`), as many as there are positives. Every draw is keyed by the seed and the
+negatives are picks shaken about at graded strengths, and picks made to show no type, as many as there are
+positives and measured to be worse (:mod:`vdsl.pipeline.clips`). Every draw is keyed by the seed and the
 story's number, whole stories go to disk, and the set itself says which were: so it is the same whether or
 not its making was stopped.
 """
@@ -12,7 +12,6 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Iterator
 from concurrent.futures import Future, ThreadPoolExecutor
-from dataclasses import dataclass, replace
 from pathlib import Path
 from time import perf_counter
 from typing import Any
@@ -23,49 +22,23 @@ from numpy.typing import NDArray
 from ranker.data import ShardWriter
 from runtime.raster.types import LOOK_VERSION
 
-from ..propose.types import CameraProposal, ProposalGrid, StoryProposal
+from ..propose.types import ProposalGrid, StoryProposal
 from .casting import Scene, Troupe
-from .designer import picks
+from .clips import Clip, clips_of
 from .filming import SEGMENTS, Camerawork
-from .labels import WORDS, classes
-from .perturb import mistyped, perturbed
+from .labels import WORDS
 from .progress import Progress, Silence
 
-_PICKS = 4  # of each shot
+#: Raised when other takes or labels come of the same seed.
+_RECIPE = 2
 _PROPOSALS = 16
 _SHARD = 64
-#: Share of the negatives that are of no type; the others are perturbed.
-_MISTYPED = 1 / 6
-_MISTYPED_STRENGTH = 0.5
-#: Negatives weaker than this still show the movement and angle, or the size, that their line asked for.
-_STILL_MOVES, _STILL_SIZED = 0.35, 0.15
 _AHEAD = 2  # scenes drawn while the next are staged and proposed
-
-
-@dataclass(frozen=True, eq=False)
-class Clip:
-    """A take to be drawn. kind: ``designer``, ``perturbed`` or ``mistyped``"""
-
-    camera: CameraProposal
-    kind: str
-    strength: float
-
-    def words(self) -> tuple[str | None, str | None, str | None]:
-        """Movement, size and angle as classes, where it still shows them."""
-        c = self.camera
-        movement, scale, angle = classes(c.movement, c.scale, c.angle)
-        if self.kind == "mistyped":
-            return None, None, None
-        return (
-            movement if self.strength < _STILL_MOVES else None,
-            scale if self.strength < _STILL_SIZED else None,
-            angle if self.strength < _STILL_MOVES else None,
-        )
 
 
 def made(seed: int) -> dict[str, Any]:
     """What a training set says of how it is made: sets that differ in it are not put together."""
-    return {"seed": seed, "look": LOOK_VERSION}
+    return {"seed": seed, "look": LOOK_VERSION, "recipe": _RECIPE}
 
 
 def generate(
@@ -112,7 +85,7 @@ def _add(writer: ShardWriter, scene: Scene, clip: Clip, pictures: NDArray[np.uin
     }
     group = scene.place.partition(".")[0]
     good = clip.kind == "designer"
-    writer.add(pictures, good, *clip.words(), group, clip.strength, scene.split, about)
+    writer.add(pictures, good, *clip.words, group, clip.strength, scene.split, about)
 
 
 def _drawn(
@@ -154,20 +127,3 @@ def _frames(camerawork: Camerawork, scene: Scene, clips: list[Clip], size: int) 
 def stories_of(grids: tuple[ProposalGrid, ...]) -> tuple[StoryProposal, ...]:
     """The performances the grids of a scene share."""
     return grids[0].story
-
-
-def clips_of(scene: Scene, rng: np.random.Generator) -> list[Clip]:
-    """The designer's picks of a scene's shots, and as many spoilt ones."""
-    out: list[Clip] = []
-    for grid in scene.grids:
-        kept = [grid.cameras[i] for i in picks(grid.cameras, _PICKS)]
-        out += [Clip(camera, "designer", 0.0) for camera in kept]
-        out += [_spoilt(camera, rng) for camera in kept]
-    return out
-
-
-def _spoilt(camera: CameraProposal, rng: np.random.Generator) -> Clip:
-    if rng.random() < _MISTYPED:
-        return Clip(replace(camera, track=mistyped(camera.track, rng)), "mistyped", _MISTYPED_STRENGTH)
-    strength = float(rng.uniform(0.1, 1.0))
-    return Clip(replace(camera, track=perturbed(camera.track, strength, rng)), "perturbed", strength)

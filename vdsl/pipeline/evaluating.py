@@ -14,7 +14,7 @@ from ranker.data import Dataset, Words
 from ranker.errors import RankerError
 from ranker.evaluate import agreement_with_fp32, evaluate
 from ranker.infer import Ranker
-from ranker.weights import load_model
+from ranker.weights import load_model, load_ranges
 
 from .hiding import hide, told
 from .progress import Progress, Silence
@@ -37,7 +37,8 @@ def evaluated(
     watcher = progress or Silence()
     held_set = Dataset(data)
     model, card = load_model(weights)
-    ranker = Ranker(model, device if device in ("cpu", "cuda") else "auto")
+    ranges = load_ranges(weights, model, card)
+    ranker = Ranker(model, device if device in ("cpu", "cuda") else "auto", ranges)
     test = np.array([i for i, label in enumerate(held_set.labels) if label.split == "test"], np.int64)
     if not len(test):
         raise RankerError(f"{data}: keeps no clips for testing; film one with `vdsc dataset`")
@@ -50,6 +51,6 @@ def evaluated(
     watcher.advance("clips", len(test), 0.0)
     some = np.random.default_rng(seed + 1).permutation(test)[:exact]
     found["spearman_fp32"] = agreement_with_fp32(load_model(weights)[0], ranker, held_set, some)
-    kept = data / "hidden" / f"{card.sha256[:12]}.jsonl"
+    kept = data / "hidden" / f"{card.sha256[:12]}-{ranker.engine}.jsonl"
     found |= told(hide(ranker, kept, proposals, seed, device, progress) if proposals else [])
-    return {"weights": card.sha256, "data": held_set.about(), **found}
+    return {"weights": card.sha256, "engine": ranker.engine, "data": held_set.about(), **found}

@@ -13,6 +13,7 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
 import vdsl
+from ranker.engine import INT8, engine_of
 from runtime.raster.types import LOOK_VERSION
 
 from .depends import digest
@@ -73,12 +74,14 @@ def options_digest(options: Options) -> str:
 
 
 def judge_digest(options: Options) -> str:
-    """Of who judges: the weights of the discriminator by their contents."""
+    """Of who judges: the weights of the discriminator by their contents, and in which numbers it computes."""
     if options.rank == "geometry":
         return "geometry"
     folder = options.weights or Path(vdsl.__file__).parents[1] / "ranker" / "weights"
     try:
         told = hashlib.sha256((folder / "config.json").read_bytes())  # it has the weights' digest
+        if engine_of(folder) == "int8":
+            told.update((folder / INT8).read_bytes())
         if options.taste is not None:
             told.update(options.taste.read_bytes())
         return told.hexdigest()

@@ -20,6 +20,7 @@ from ..cinema.sizes import Size, size_of
 from ..cinema.space import Stage, nearby, stage_of
 from ..cinema.subject import Subject
 from ..cinema.takes import Takes, samples
+from ..cinema.track import CameraTrack
 from ..lang.ir import Shot
 from .candidates import Shooting
 from .drawing import Sample, draw, generator, nudged
@@ -153,7 +154,9 @@ def try_cameras(
     if not len(kept):
         return Tried(shooting, reason, kept, None)
     left = shooting.only(kept)
-    takes = replace(_takes(shot, subject, left, story, filming), near=near.only(kept))
+    window = left.window(at, subject.frames)
+    takes = _takes(shot, subject, left.track, left.scales, window, left.key, story, filming)
+    takes = replace(takes, near=near.only(kept))
     measured = measure(takes, subject, filming.world, filming.fps)
     reason[kept] = reasons(left, measured, subject)
     if foci.end is not None:
@@ -167,8 +170,46 @@ def try_cameras(
     return Tried(shooting, reason, kept, measured)
 
 
-def _takes(shot: Shot, subject: Subject, shooting: Shooting, story: StoryProposal, filming: Filming) -> Takes:
-    sizes: tuple[Size, ...] = tuple(size_of(subject.kind, s) for s in shooting.scales)
+def measured_anew(
+    shot: Shot, story: StoryProposal, filming: Filming, cameras: Sequence[CameraProposal]
+) -> list[CameraProposal]:
+    """Cameras of one story with the measures and the hidden walls of the tracks they have now, whatever was
+    done to these since they were proposed."""
+    if not cameras:
+        return []
+    subject, tracks = subject_of(shot, story, filming), [c.track for c in cameras]
+    track = CameraTrack(
+        np.stack([t.position for t in tracks]),
+        np.stack([t.rotation for t in tracks]),
+        np.stack([t.focal for t in tracks]),
+        np.stack([t.look_at for t in tracks]),
+        tracks[0].sensor,
+    )
+    window, key = np.stack([c.window for c in cameras]), np.array([c.key for c in cameras])
+    takes = _takes(shot, subject, track, tuple(c.scale for c in cameras), window, key, story, filming)
+    found = measure(takes, subject, filming.world, filming.fps)
+    scores = geometry_scores(found.values)
+    return [
+        replace(
+            camera,
+            hidden_walls=found.hidden[p],
+            measures={k: float(v[p]) for k, v in found.values.items()} | {"geometry": float(scores[p])},
+        )
+        for p, camera in enumerate(cameras)
+    ]
+
+
+def _takes(
+    shot: Shot,
+    subject: Subject,
+    track: CameraTrack,
+    scales: Sequence[str],
+    window: NDArray[np.bool_],
+    key: NDArray[np.int64],
+    story: StoryProposal,
+    filming: Filming,
+) -> Takes:
+    sizes: tuple[Size, ...] = tuple(size_of(subject.kind, s) for s in scales)
     ignore = None
     if subject.kind == "thing" and shot.focus is not None:
         item = find_object(filming.world, shot.focus)
@@ -176,12 +217,11 @@ def _takes(shot: Shot, subject: Subject, shooting: Shooting, story: StoryProposa
     others = pillars_of(
         shot, story, {subject.name, *subject.heads, *(shot.whose if shot.view == "pov" else ())}
     )
-    window = shooting.window(samples(subject.frames), subject.frames)
     return Takes(
-        shooting.track,
+        track,
         sizes,
         window,
-        shooting.key,
+        key,
         shot.roll,
         filming.rig == "paper",
         tuple(others),
@@ -227,6 +267,7 @@ def _choose(batches: Sequence[_Batch], wanted: int) -> list[tuple[int, int]]:
 
 def _proposal(index: int, batch: _Batch, row: int, shot: Shot) -> CameraProposal:
     track = batch.shooting.track
+    frames = track.position.shape[1]
     values = {k: float(v[row]) for k, v in batch.measured.values.items()}
     values["geometry"] = float(batch.scores[row])
     return CameraProposal(
@@ -240,4 +281,6 @@ def _proposal(index: int, batch: _Batch, row: int, shot: Shot) -> CameraProposal
         hidden_walls=batch.measured.hidden[row],
         unseen=shot.whose[0] if shot.view == "pov" and shot.whose else "",
         measures=values,
+        window=batch.shooting.window(samples(frames), frames)[row],
+        key=int(batch.shooting.key[row]),
     )

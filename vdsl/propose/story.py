@@ -121,13 +121,18 @@ def propose(
 
 def film(told: Told, shot: Shot, state: SceneState, filming: Filming, advised: bool = False) -> ProposalGrid:
     """Cameras on a line that is performed already: several shots of one line may share its performances."""
-    moved = [p for p in told.end.world.objects if p.hinge is not None]
-    widest = {p.id: max(p.ajar, state.world.objects[p.id].ajar) for p in moved}  # what opens hides most open
-    filming = replace(filming, world=state.world.opened(widest))
+    filming = as_filmed(told, state, filming)
     grid = propose_cameras(shot, told.proposals, filming)
     if advised and told.proposals and grid.let_in == len(grid.cameras):
         return replace(grid, advice=advise(shot, told.proposals[0], filming, told.proposals[1:]))
     return grid
+
+
+def as_filmed(told: Told, state: SceneState, filming: Filming) -> Filming:
+    """The scene as cameras on a performed line find it: what opens hides most when it is open."""
+    moved = [p for p in told.end.world.objects if p.hinge is not None]
+    widest = {p.id: max(p.ajar, state.world.objects[p.id].ajar) for p in moved}
+    return replace(filming, world=state.world.opened(widest))
 
 
 def _errands(

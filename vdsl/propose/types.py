@@ -55,6 +55,8 @@ class CameraProposal:
     hidden_walls: bool [W], wild walls not drawn in this take
     unseen: whose eyes it looks through, who is not drawn; "" for nobody
     measures: geometry measured from the track, by name (see vdsl.cinema.measures)
+    window: bool [F] on the frames measured, when its subject is meant to be in the picture
+    key: the frame its size is asked at
     """
 
     index: int
@@ -67,6 +69,8 @@ class CameraProposal:
     hidden_walls: NDArray[np.bool_]
     unseen: str = ""
     measures: dict[str, float] = field(default_factory=dict)
+    window: NDArray[np.bool_] = field(default_factory=lambda: np.zeros(0, bool))
+    key: int = 0
 
 
 @dataclass(frozen=True, eq=False)

@@ -101,8 +101,8 @@ class Renderer:
             try:
                 if moved.stop < part.stop:
                     moved = slice(begin, count) if every else part
-                    used, local = np.unique(moment[moved], return_inverse=True)
-                    local = local.reshape(-1).astype(np.int32)
+                    used, inverse = np.unique(moment[moved], return_inverse=True)
+                    local = inverse.reshape(-1).astype(np.int32)
                     self._move(content, palettes[used] if len(palettes) else palettes, height, hidden[moved])
                 self._draw(
                     view[part],

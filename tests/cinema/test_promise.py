@@ -26,7 +26,7 @@ PAIRS = tuple(
     dict.fromkeys(s.movement for s in styles() if "+" in s.movement and "rack-focus" not in s.movement)
 )
 SINGLES = tuple(m for m in (*MOVEMENTS, *FURTHER_MOVEMENTS) if m != "rack-focus")
-SHOTS, EACH = 220, 10
+SHOTS, EACH = 220, 6
 
 
 @dataclass(frozen=True, eq=False)

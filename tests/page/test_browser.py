@@ -13,6 +13,8 @@ from driving import Place, at_frame, frame, opened, plays, until
 
 from vdsl.pipeline.lock import read_lock
 
+pytestmark = pytest.mark.slow
+
 # --- playing ----------------------------------------------------------------------------------
 
 

@@ -17,6 +17,8 @@ from vdsl.pipeline.compile import compile_file
 from vdsl.pipeline.lock import read_lock
 from vdsl.pipeline.options import Options
 
+pytestmark = pytest.mark.slow
+
 # --- going along ------------------------------------------------------------------------------
 
 

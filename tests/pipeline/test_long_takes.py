@@ -1,4 +1,4 @@
-"""A take is drawn and encoded as it goes: a minute of it needs no more memory than ten seconds."""
+"""A take is drawn and encoded as it goes: half a minute of it needs no more memory than ten seconds."""
 
 from __future__ import annotations
 
@@ -52,6 +52,6 @@ def peak_mib(folder: Path, frames: int) -> int:
 
 @pytest.mark.slow
 def test_memory_does_not_grow_with_a_takes_length(tmp_path: Path) -> None:
-    ten_seconds, a_minute = peak_mib(tmp_path, 240), peak_mib(tmp_path, 1440)
-    # poses and cameras are kept for the whole take, pictures are not: a minute of them would be 240 MiB
-    assert a_minute < ten_seconds + 60
+    ten_seconds, half_a_minute = peak_mib(tmp_path, 240), peak_mib(tmp_path, 720)
+    # poses and cameras are kept for the whole take, pictures are not: twenty seconds more would be 79 MiB
+    assert half_a_minute < ten_seconds + 40

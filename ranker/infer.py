@@ -77,6 +77,16 @@ class Ranker:
         model, card = load_model(path)
         return cls(model, device, load_ranges(path, model, card))
 
+    def fits(self, frames: int, size: int | None = None) -> None:
+        """Raises :class:`RankerError` where shots of so many frames, of that size, are not what it judges."""
+        c = self.config
+        if c.frames != frames or (size is not None and c.size != size):
+            drawn = f"{frames} frames" if size is None else f"{frames} frames of {size} × {size}"
+            raise RankerError(
+                f"these weights judge shots by {c.frames} frames of {c.size} × {c.size}, and not by {drawn}; "
+                "train others with `vdsc train`, or go on without the ranker with `--rank geometry`"
+            )
+
     def score(self, frames: NDArray[np.uint8]) -> Scores:
         """Judge shots: uint8 [P, frames, size, size, 3] sRGB, frames evenly spaced from first to last."""
         size = self.config.size

@@ -20,6 +20,7 @@ from ranker.infer import Ranker, fold_batch_norm
 from ranker.model import ShotRanker, frame_times, normalised
 from ranker.train import learning_rate, mirror_words, train, varied, watch
 from ranker.weights import load_card, load_model, save_weights
+from vdsl.pipeline.judging import DiscriminatorJudge
 
 
 @pytest.fixture(scope="module")
@@ -191,6 +192,17 @@ def test_bad_weights_are_named(tmp_path: Path, weights: Path, how: str) -> None:
         Ranker.load(tmp_path, "cpu")
     assert str(tmp_path / blamed) in str(caught.value)
     assert "--rank geometry" in str(caught.value)
+
+
+def test_weights_for_other_pictures_are_told(weights: Path) -> None:
+    ranker = Ranker.load(weights, "cpu")
+    ranker.fits(FRAMES, SIZE)
+    ranker.fits(FRAMES)
+    for frames, size in ((FRAMES, 224), (FRAMES + 1, SIZE), (FRAMES + 1, None)):
+        with pytest.raises(RankerError, match=r"vdsc train.*--rank geometry"):
+            ranker.fits(frames, size)
+    with pytest.raises(RankerError, match="8 frames of 224 × 224"):
+        DiscriminatorJudge(weights, "cpu")
 
 
 def test_auc_counts_pairs() -> None:

@@ -14,8 +14,9 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from ..propose.types import ProposalGrid
+from ..propose.types import CameraProposal, ProposalGrid
 from ..stage.assemble import StagedScene
+from .ahead import one_ahead
 from .filming import SEGMENTS, Camerawork
 from .judging import Judge
 from .progress import StageClock
@@ -54,14 +55,19 @@ class Screening:
         clock.begin("draw", len(frames) * len(which), "frames")
         clock.begin("rank", len(frames) * len(which), "frames")
         parts, at_once = [], _DRAWN_AT_ONCE // len(frames)
-        for begin in range(0, len(which), at_once):
-            cameras = tuple(self.grid.cameras[i] for i in which[begin : begin + at_once])
-            amount = len(frames) * len(cameras)
-            with clock.spent("draw", amount):
-                pictures = self.camerawork.judge_frames(
+
+        def drawn(cameras: tuple[CameraProposal, ...]) -> NDArray[np.uint8]:
+            with clock.spent("draw", len(frames) * len(cameras)):
+                return self.camerawork.judge_frames(
                     self.staged, self.style, self.grid.story, cameras, which=frames
                 )
-            with clock.spent("rank", amount):
+
+        batches = (
+            tuple(self.grid.cameras[i] for i in which[begin : begin + at_once])
+            for begin in range(0, len(which), at_once)
+        )
+        for cameras, pictures in one_ahead(drawn, batches):
+            with clock.spent("rank", len(frames) * len(cameras)):
                 whole = len(frames) == SEGMENTS
                 parts.append(
                     judge.scores(cameras, pictures) if whole else judge.glance(cameras, pictures, frames)

@@ -15,6 +15,7 @@ from time import perf_counter
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ranker.evaluate import agreement, hidden
 from ranker.infer import Ranker
@@ -23,6 +24,7 @@ from runtime.raster.types import LOOK_VERSION
 from ..cinema.score import geometry_score, parts
 from ..lang.ir import Shot
 from ..propose.types import ProposalGrid
+from .ahead import one_ahead
 from .casting import TEST_EVERY, Scene, Troupe
 from .designer import picks
 from .filming import Camerawork
@@ -127,9 +129,12 @@ def _scored(
 ) -> Scored:
     margins: list[float] = []
     size = ranker.config.size
-    for begin in range(0, len(grid.cameras), _AT_ONCE):
+
+    def drawn(begin: int) -> NDArray[np.uint8]:
         cameras = grid.cameras[begin : begin + _AT_ONCE]
-        frames = camerawork.judge_frames(scene.staged, shot.style, grid.story, cameras, (size, size))
+        return camerawork.judge_frames(scene.staged, shot.style, grid.story, cameras, (size, size))
+
+    for _, frames in one_ahead(drawn, range(0, len(grid.cameras), _AT_ONCE)):
         margins += [round(float(m), 5) for m in ranker.score(frames).margin]
     measures = {k: np.array([c.measures[k] for c in grid.cameras]) for k in grid.cameras[0].measures}
     alone = {k: [round(float(v), 4) for v in values] for k, values in parts(measures).items()}

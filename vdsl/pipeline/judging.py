@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from ..cinema.score import PRIOR, geometry_score
 from ..propose.types import CameraProposal
+from .filming import JUDGE_SIZE, SEGMENTS
 
 if TYPE_CHECKING:
     from ranker.infer import Scores
@@ -89,6 +90,7 @@ class DiscriminatorJudge:
         from ranker.weights import load_card
 
         self._ranker = Ranker.load(weights, device="cuda" if device == "cuda" else "cpu")
+        self._ranker.fits(SEGMENTS, JUDGE_SIZE[0])
         self._taste = load_taste(taste, load_card(weights).sha256) if taste is not None else None
 
     def scores(

@@ -49,10 +49,12 @@ def learn_taste(
     from ranker.taste import Choice, learn, save_taste
     from ranker.weights import load_card
 
+    from .filming import SEGMENTS
     from .realclips import preferences
 
     found = []
     ranker = Ranker.load(weights, device if device in ("cpu", "cuda") else "auto")
+    ranker.fits(SEGMENTS)
     for script in scripts:
         for liked in preferences(script, ranker.config.size):
             scores = ranker.score(liked.frames)

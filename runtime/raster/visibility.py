@@ -151,6 +151,7 @@ class Visibility:
         tag = self._buffer("tag", (views * 2 * most * kernels.TAGS,), np.int32)
         clipped = self._buffer("clipped", (views * most,), np.int32)
         counts = self._buffer("counts", (views, 2), np.int32)
+        extent = self._buffer("extent", (views * -(-2 * most // kernels.BUNDLE) * 2,), np.int32)
         self._gather(
             view,
             moment,
@@ -186,6 +187,7 @@ class Visibility:
             corner,
             tag,
             counts,
+            extent,
             most,
             views,
             height,
@@ -211,6 +213,7 @@ class Visibility:
             corner,
             tag,
             counts,
+            extent,
             most,
             line.reshape(-1, lanes),
             line,

@@ -34,6 +34,7 @@ LANES = 16  # 1 << LANE_BITS
 LANE_BITS = 4
 CORNERS = 9  # numbers of a triangle: three corners, x y z
 TAGS = 3  # numbers kept with a triangle on the screen: triangle + 1, first row, row after the last
+BUNDLE = 32  # triangles on the screen, one after another, whose rows are kept together
 GROUPS = 4  # of LANES triangles in a cluster, at most
 WHOLE, ACROSS = 1.0, 2.0  # states of a lane: in front of the near plane, or across it
 EVEN = 12582912.0  # 1.5 * 2^23: adding and taking it off rounds to whole numbers
@@ -259,11 +260,15 @@ def clip(
     corner: f1,
     tag: i1,
     counts: i2,
+    extent: i1,
     most: ti.i32,
     views: ti.i32,
     height: ti.i32,
 ):
-    """Cut the triangles across the near plane that :func:`gather` found; add what is left to its findings."""
+    """Cut the triangles across the near plane that :func:`gather` found; add what is left to its findings.
+
+    extent: [views, bundles of a view, 2], first row and row after the last of each BUNDLE of findings
+    """
     ti.loop_config(block_dim=1)
     for n in range(views):
         eye = part3(view, n, 0)
@@ -308,3 +313,11 @@ def clip(
                 tag[to + 2] = ti.cast(bounded(bottom, 0.0, tall), ti.i32)
                 found += 1
         counts[n, 0] = found
+        bundles = (2 * most + BUNDLE - 1) // BUNDLE
+        for i in range((found + BUNDLE - 1) // BUNDLE):
+            first, last = height, 0
+            for k in range(i * BUNDLE, ti.min(found, i * BUNDLE + BUNDLE)):
+                first = ti.min(first, tag[(n * 2 * most + k) * TAGS + 1])
+                last = ti.max(last, tag[(n * 2 * most + k) * TAGS + 2])
+            extent[(n * bundles + i) * 2] = first
+            extent[(n * bundles + i) * 2 + 1] = last

@@ -9,7 +9,7 @@ Same arithmetic as ``geometry.fill``, operation by operation: same buffers to th
 
 import taichi as ti
 
-from .gather import CORNERS, EVEN, LANE_BITS, LANES, TAGS, I, V, fv, iv
+from .gather import BUNDLE, CORNERS, EVEN, LANE_BITS, LANES, TAGS, I, V, fv, iv
 from .geometry import f1, greater, i1, i2, lesser, u32s, u64s
 
 uv = ti.types.ndarray(dtype=ti.types.vector(LANES, ti.u32), ndim=1)
@@ -31,6 +31,7 @@ def paint(
     corner: f1,
     tag: i1,
     counts: i2,
+    extent: i1,
     most: ti.i32,
     line: fv,
     number: f1,
@@ -91,10 +92,17 @@ def paint(
                     owner[i] = I(0)
             over = begin >= 0
             mark = (n * height + y_from) * groups - own
-            for k in range(n * 2 * most, n * 2 * most + counts[n, 0]):
-                y = ti.max(tag[k * TAGS + 1], y_from)
-                y_end = ti.min(tag[k * TAGS + 2], y_to)
-                if y < y_end:
+            bundles = (2 * most + BUNDLE - 1) // BUNDLE * n
+            for bundle in range((counts[n, 0] + BUNDLE - 1) // BUNDLE):
+                at = (bundles + bundle) * 2
+                if extent[at] >= y_to or extent[at + 1] <= y_from:
+                    continue
+                bundle_end = ti.min(counts[n, 0], bundle * BUNDLE + BUNDLE)
+                for k in range(n * 2 * most + bundle * BUNDLE, n * 2 * most + bundle_end):
+                    y = ti.max(tag[k * TAGS + 1], y_from)
+                    y_end = ti.min(tag[k * TAGS + 2], y_to)
+                    if y >= y_end:
+                        continue
                     at = k * CORNERS
                     ax, ay, az = corner[at], corner[at + 1], corner[at + 2]
                     bx, by, bz = corner[at + 3], corner[at + 4], corner[at + 5]

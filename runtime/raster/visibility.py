@@ -174,6 +174,10 @@ class Visibility:
             width,
             height,
         )
+        groups = -(-width // lanes)
+        rows = max(
+            1, min(BAND_PIXELS // (groups * lanes), -(-height * views // self._backend.threads), height)
+        )
         kernels.clip(
             view,
             moment,
@@ -191,10 +195,7 @@ class Visibility:
             most,
             views,
             height,
-        )
-        groups = -(-width // lanes)
-        rows = max(
-            1, min(BAND_PIXELS // (groups * lanes), -(-height * views // self._backend.threads), height)
+            int(rows < height),
         )
         workers = TURNS * self._backend.threads
         line = self._buffer("line", (workers * 3 * lanes,), np.float32)

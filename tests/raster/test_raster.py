@@ -317,8 +317,10 @@ def test_importing_the_package_does_not_load_taichi() -> None:
     subprocess.run([sys.executable, "-c", code], check=True)
 
 
-def test_both_ways_of_filling_agree() -> None:
+@pytest.mark.parametrize("band", [100_000, 200])  # pixels: a view in few bands, or four rows in each
+def test_both_ways_of_filling_agree(monkeypatch: pytest.MonkeyPatch, band: int) -> None:
     # the one with atomics is for GPUs; it walks the same spans
+    monkeypatch.setattr("runtime.raster.visibility.BAND_PIXELS", band)
     s, views = small(), looking(EYES, AIMS, focal=24, walls=1)
     alone = draw(s, views)
     r = renderer(PLAIN)

@@ -264,10 +264,12 @@ def clip(
     most: ti.i32,
     views: ti.i32,
     height: ti.i32,
+    banded: ti.i32,
 ):
     """Cut the triangles across the near plane that :func:`gather` found; add what is left to its findings.
 
-    extent: [views, bundles of a view, 2], first row and row after the last of each BUNDLE of findings
+    extent: [views, bundles of a view, 2], first row and row after the last of each BUNDLE of findings;
+        all rows unless ``banded``, as then every band looks at all of them
     """
     ti.loop_config(block_dim=1)
     for n in range(views):
@@ -315,9 +317,11 @@ def clip(
         counts[n, 0] = found
         bundles = (2 * most + BUNDLE - 1) // BUNDLE
         for i in range((found + BUNDLE - 1) // BUNDLE):
-            first, last = height, 0
-            for k in range(i * BUNDLE, ti.min(found, i * BUNDLE + BUNDLE)):
-                first = ti.min(first, tag[(n * 2 * most + k) * TAGS + 1])
-                last = ti.max(last, tag[(n * 2 * most + k) * TAGS + 2])
+            first, last = 0, height
+            if banded != 0:
+                first, last = height, 0
+                for k in range(i * BUNDLE, ti.min(found, i * BUNDLE + BUNDLE)):
+                    first = ti.min(first, tag[(n * 2 * most + k) * TAGS + 1])
+                    last = ti.max(last, tag[(n * 2 * most + k) * TAGS + 2])
             extent[(n * bundles + i) * 2] = first
             extent[(n * bundles + i) * 2 + 1] = last

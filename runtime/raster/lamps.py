@@ -28,13 +28,14 @@ LEVEL = 0.62  # light that a bulb throws on what it is made to light, before it 
 HOOD = 0.75  # share of its light that a lamp under a hood sends down rather than all around
 HOODED = (0.45, 0.02)  # metres around a lamp, and square metres of its own thing above it that are a hood
 FLAT = 0.66  # share of a body's surface that faces one way, from which on it is a pane or a screen
+THIN = 0.15  # how thick a lamp is for its width at most, to be one as well
 PANE = 0.6  # how much of a bulb's light a square metre of these throws, both sides together
 REACH = 4.0  # how often as far as that it reaches at all
 CELL = 0.12  # metres, finest cell of the volume
 CELLS = 90_000  # most cells of it
 HEADER = 8  # numbers before the cells: see :func:`header`
 LAMP = 12  # numbers kept of each lamp: see :func:`packed_lamps`
-CLAY_COLOR = 0.45  # how much of the colour of its lamps clay keeps
+CLAY_COLOR, CLAY_SHARE = 0.45, 0.6  # how much of the colour and of the light of its lamps clay keeps
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,6 +80,8 @@ def find_lamps(
     facing = gathered(cross) / whole[:, None]  # nothing of a closed body, of length 1 of a flat one
     sides = gathered(np.abs(cross))
     flat = (sides.max(axis=1) > FLAT * whole) & (sides.argmax(axis=1) < 2)  # upright ones
+    wide = np.sqrt(gathered(area[:, None] * (middle - place[of]) ** 2) / whole[:, None])[:, :2]
+    flat |= wide.min(axis=1) < THIN * wide.max(axis=1)  # a trace on a screen, letters of neon
     first = np.unique(of, return_index=True)[1]
     floors = np.array(sorted(levels)) if levels else np.zeros(1)
     under = floors[np.clip(np.searchsorted(floors, place[:, 2], side="right") - 1, 0, None)]
@@ -93,6 +96,7 @@ def find_lamps(
     color /= np.maximum(color.max(axis=1, keepdims=True), 1e-6)
     if style.clay:
         color = (color @ LUMA)[:, None] + (color - (color @ LUMA)[:, None]) * CLAY_COLOR
+        power *= CLAY_SHARE
     kept = np.argsort(-power, kind="stable")[:MOST_LAMPS]
     radius = np.clip(spread, 0.06, 0.6) + 0.22 * height
     return Lamps(

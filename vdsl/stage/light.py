@@ -77,6 +77,8 @@ _LAMPS = {
 _LOWERED = 0.86
 #: How far key and fill step back before lamps that are turned all the way up.
 _BACK, _BACK_OUTSIDE = (0.45, 0.26), (0.5, 0.32)
+#: Lamps enough to light a place by themselves, as ``shining`` counts them.
+_ENOUGH = 0.025
 _BOUNCE: Colour = (0.15, 0.10, 0.04)
 
 #: A lit window seen from the street at night.
@@ -124,11 +126,13 @@ def make_light(definition: SetDef, time: str, room: tuple[str, ...] = ()) -> Lig
     return Light(sun, hour.sun, hour.sky, hour.ground, hour.backdrop, hour.lamps, hour.windows)
 
 
-def by_lamplight(light: Light, outdoor: bool) -> Light:
+def by_lamplight(light: Light, outdoor: bool, shining: float) -> Light:
     """The light of a set that has lamps, as far as they are turned up: the rest steps back before them, and
-    what walls throw back of them is warm."""
-    key, fill = (1.0 - back * light.lamps for back in (_BACK_OUTSIDE if outdoor else _BACK))
-    bounce = (0.0, 0.0, 0.0) if outdoor else _times(_BOUNCE, light.lamps)
+    what walls throw back of them is warm. shining: their light one metre away for each square metre of floor,
+    so that a place with a screen or a candle alone does not go dark."""
+    share = light.lamps * min(shining / _ENOUGH, 1.0)
+    key, fill = (1.0 - back * share for back in (_BACK_OUTSIDE if outdoor else _BACK))
+    bounce = (0.0, 0.0, 0.0) if outdoor else _times(_BOUNCE, share)
     return replace(
         light,
         sun_color=_times(light.sun_color, key),

@@ -11,7 +11,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from runtime.mesh import MATERIALS
+from runtime.raster.lamps import find_lamps
+from runtime.raster.types import Style
 from runtime.world import Level, Solids, Wall, World, WorldObject
 
 from ..lang.definitions.files import FileSetDef
@@ -79,11 +80,13 @@ def _world(
 ) -> World:
     """The pieces as a world, its glass as it looks at this hour."""
     mesh, owners, mesh_wall = pieces.mesh()
+    solids, levels = pieces.solids(), pieces.levels()
     mesh = glazed(mesh, owners, pieces.objects, definition, time)
     light = make_light(definition, time, room)
-    if (mesh.materials == MATERIALS.index("glow")).any():
-        light = by_lamplight(light, definition.outdoor)
-    solids, levels = pieces.solids(), pieces.levels()
+    heights = tuple(level.height for level in levels)
+    lamps = find_lamps(mesh, owners, heights, light.lamps, Style())
+    area = sum((x1 - x0) * (y1 - y0) for level in levels for x0, y0, x1, y1 in level.floors)
+    light = by_lamplight(light, definition.outdoor, float(lamps.color.sum()) / 3 / max(area, 1.0))
     objects = [_with_clear_spots(o, solids, levels) for o in pieces.objects]
     for k, item in enumerate(objects):
         if item.hinge is not None and item.mesh is not None:

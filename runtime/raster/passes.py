@@ -49,6 +49,7 @@ class Passes:
             ink,
             paint,
             pattern,
+            rows,
             shading,
             smooth,
             sunlight,
@@ -58,6 +59,8 @@ class Passes:
         self._hatch, self._pattern, self._smooth = hatch, pattern, smooth
         self._smooth_runs = vectorised(smooth.smooth_runs)
         self._sunlight = sunlight
+        self._rows, self._upload = rows, backend.upload
+        self._match_runs = vectorised(rows.match_runs) if backend.on_host else None
         self.SHADE: int = paint.SHADE
         self.shading = shading.shading_kernels(style)
         self._ink = ink.ink_kernels(style)
@@ -92,6 +95,41 @@ class Passes:
     ) -> None:
         """Light, and the patterns of materials or strokes. seen: views, moments, how many views"""
         view, moment, views = seen
+        a, scene = loaded.arrays, loaded.scene
+        lines, between = self._rows.planned(views, size[1])
+        left = self._buffer("left", (views * size[1] * -(-size[0] // self.run),), np.int32)
+        self._shade_rows(loaded, moments, layer, seen, size, lines, left, False)
+        if len(between):
+            self._match(layer, between, left, size)
+            lines = np.ascontiguousarray(between[:, 0])
+            self._shade_rows(loaded, moments, layer, seen, size, lines, left, True)
+        extent = (views, *size)
+        if loaded.sunlight is not None:
+            self._lay_sunlight(loaded, moments, layer, seen, size)
+        if self._style.hatch:
+            places = (a["vertices"], a["rest"], moments.position, a["faces"])
+            counts = (scene.static_faces, loaded.static_vertices)
+            paper = (a["tone"], loaded.paper, self._lattice)
+            strokes = (layer.vis, layer.level, layer.picture)
+            self._hatch.hatch_rows(view, moment, *places, *counts, *paper, *strokes, *extent)
+        elif not self._style.clay:
+            kept = (layer.vis, layer.solid, layer.level, layer.picture)
+            sheet = (loaded.sheet, scene.static_faces, self._lattice)
+            self._pattern.grain_rows(view, *sheet, *kept, *extent)
+
+    def _shade_rows(
+        self,
+        loaded: Loaded,
+        moments: Moments,
+        layer: Layer,
+        seen: tuple[Any, Any, int],
+        size: tuple[int, int],
+        lines: NDArray[np.int32],
+        left: Any,
+        sparse: bool,
+    ) -> None:
+        """Light of some rows. sparse: only of what is left"""
+        view, moment, _ = seen
         a, scene = loaded.arrays, loaded.scene
         self.shading.rows(
             view,
@@ -135,22 +173,22 @@ class Passes:
             layer.edge,
             layer.solid,
             layer.level,
-            views,
+            self._upload(lines),
+            int(sparse),
+            left,
             *size,
         )
-        extent = (views, *size)
-        if loaded.sunlight is not None:
-            self._lay_sunlight(loaded, moments, layer, seen, size)
-        if self._style.hatch:
-            places = (a["vertices"], a["rest"], moments.position, a["faces"])
-            counts = (scene.static_faces, loaded.static_vertices)
-            paper = (a["tone"], loaded.paper, self._lattice)
-            strokes = (layer.vis, layer.level, layer.picture)
-            self._hatch.hatch_rows(view, moment, *places, *counts, *paper, *strokes, *extent)
-        elif not self._style.clay:
-            kept = (layer.vis, layer.solid, layer.level, layer.picture)
-            sheet = (loaded.sheet, scene.static_faces, self._lattice)
-            self._pattern.grain_rows(view, *sheet, *kept, *extent)
+
+    def _match(self, layer: Layer, rows: NDArray[np.int32], left: Any, size: tuple[int, int]) -> None:
+        """Colours of rows that lie between shaded ones; ``left``: what cannot be had from those."""
+        width, run = size[0], self.run
+        if self._match_runs is not None and width % run == 0:
+            buffers = (layer.vis, layer.picture, layer.edge)
+            wide = (x[: len(x) // run * run].reshape(-1, run) for x in buffers)
+            self._match_runs(rows, *wide, layer.solid, layer.level, left, width // run)
+        else:
+            kept = (layer.vis, layer.picture, layer.edge, layer.solid, layer.level)
+            self._rows.match_rows(self._upload(rows), *kept, left, width)
 
     def _lay_sunlight(
         self,

@@ -17,6 +17,7 @@ BLOCK, BLOCK_BITS = 8, 3  # shifting is quicker than dividing what might be nega
 FINE, FINE_BITS = 4, 2
 NOWHERE = -1e9
 FINEST = 0.006  # metres, no texel is smaller
+MANY = 64  # blocks of a map that are looked at for one place
 
 
 @ti.func
@@ -212,6 +213,39 @@ def free_between(a, b, m, frame: ti.template(), size, coarse: ti.template()):
                 else:
                     out = x < low or y < low or x > high or y > high
                 k += 1
+    return out
+
+
+@ti.func
+def clear_over(low, high, m, frame: ti.template(), size, coarse: ti.template()):
+    """Whether nothing can be in the light of all that lies between two light coordinates, as far as
+    that can be said from MANY blocks."""
+    out = True
+    if size > 1:
+        left, right = (
+            ti.floor((low.x - frame[m, 0]) * frame[m, 2]),
+            ti.floor((high.x - frame[m, 0]) * frame[m, 2]),
+        )
+        below, above = (
+            ti.floor((low.y - frame[m, 1]) * frame[m, 2]),
+            ti.floor((high.y - frame[m, 1]) * frame[m, 2]),
+        )
+        edge = ti.cast(size + BLOCK, ti.f32)
+        if right >= -BLOCK - 1 and left <= edge + 1 and above >= -BLOCK - 1 and below <= edge + 1:
+            if left < 0 or below < 0 or right >= size or above >= size:
+                out = False
+            else:
+                blocks, fine = size >> BLOCK_BITS, size >> FINE_BITS
+                begin = m * coarse_size(size) + 2 * fine * fine
+                i0, i1_ = ti.cast(left, ti.i32) >> BLOCK_BITS, ti.cast(right, ti.i32) >> BLOCK_BITS
+                j0, j1 = ti.cast(below, ti.i32) >> BLOCK_BITS, ti.cast(above, ti.i32) >> BLOCK_BITS
+                if (i1_ - i0 + 1) * (j1 - j0 + 1) > MANY:
+                    out = False
+                else:
+                    for j in range(j0, j1 + 1):
+                        for i in range(i0, i1_ + 1):
+                            if low.z < coarse[begin + j * blocks + i]:
+                                out = False
     return out
 
 

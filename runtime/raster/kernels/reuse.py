@@ -2,7 +2,8 @@
 
 Rows are worked on in runs of RUN pixels; a block is RUN runs one under the other. A run is drawn anew where
 something moving is in it or beside it, or where its light may not be that of the empty set: where it is not
-clear of the moment's shadow map or of what stands on the floor. Around those runs lines are drawn anew, and
+clear of the moment's shadow map or of what stands on the floor; and with it all runs of its band of rows,
+which are shaded together. Around those runs lines are drawn anew, and
 around these stair-steps are smoothed anew; everything else is copied. For the host, and rows of whole runs.
 """
 
@@ -11,46 +12,52 @@ around these stair-steps are smoothed anew; everything else is copied. For the h
 
 import taichi as ti
 
+from .ambient import lift_of
 from .geometry import f1, f2, greater, i1, i2, lesser, nearness, part3, triangle, u64s, vec3
-from .light import BLOCK, BLOCK_BITS, FINE_BITS, across, coarse_size
+from .light import MANY, across, clear_over
 from .paint import DONE, INK, RUN, SHADE, SMOOTH
-from .shading import lift_of
+from .rows import BAND
 from .spans import uv
 
 NOWHERE, SHADED, INKED, FINAL = 0, 1, 2, 4  # what is copied into a run
 REACH = 9  # numbers kept of what a run sees: its bounds across the light, and over the floor
 HIGH = (1, 3, 6, 8)  # those that are upper bounds
 quads = ti.types.ndarray(dtype=ti.types.vector(4, ti.u32), ndim=1)
-MANY = 64  # blocks of a shadow map, cells of the floor: a run over more is drawn anew
 
 
 @ti.kernel
 def reach_of(view: f2, vis: u64s, basis: f1, views: ti.i32, width: ti.i32, height: ti.i32, reach: f1):
-    """Where each run of an empty set lies in the light, its neighbour's first pixel included.
+    """Where each tile of an empty set (BAND rows of a run) lies in the light, the first pixel of its
+    neighbour included.
 
-    reach, REACH numbers a run: light coordinates low x, high x, low y, high y, low z; then low x, high x,
+    reach, REACH numbers a tile: light coordinates low x, high x, low y, high y, low z; then low x, high x,
     low y, high y in the world. Low above high where nothing is seen.
     """
     runs = (width + RUN - 1) // RUN
-    for line in range(views * height):
-        n = line // height
+    tiles = (height + BAND - 1) // BAND
+    for task in range(views * tiles):
+        n, top = task // tiles, (task % tiles) * BAND
         eye = part3(view, n, 0)
         step = part3(view, n, 3) / view[n, 12]
-        first = (
-            part3(view, n, 9)
-            + part3(view, n, 6) * ((view[n, 15] - (line % height + 0.5)) / view[n, 13])
-            + step * (0.5 - view[n, 14])
-        )
         for run in range(runs):
             low, high = vec3(1e30), vec3(-1e30)
             floor_low, floor_high = vec3(1e30), vec3(-1e30)
-            for x in range(run * RUN, ti.min(width, run * RUN + RUN + 1)):
-                if triangle(vis, line * width + x) >= 0:
-                    p = eye + (first + step * ti.cast(x, ti.f32)) * (1.0 / nearness(vis, line * width + x))
-                    q = across(basis, p)
-                    low, high = ti.min(low, q), ti.max(high, q)
-                    floor_low, floor_high = ti.min(floor_low, p), ti.max(floor_high, p)
-            at = (line * runs + run) * REACH
+            for y in range(top, ti.min(height, top + BAND)):
+                first = (
+                    part3(view, n, 9)
+                    + part3(view, n, 6) * ((view[n, 15] - (y + 0.5)) / view[n, 13])
+                    + step * (0.5 - view[n, 14])
+                )
+                line = n * height + y
+                for x in range(run * RUN, ti.min(width, run * RUN + RUN + 1)):
+                    if triangle(vis, line * width + x) >= 0:
+                        p = eye + (first + step * ti.cast(x, ti.f32)) * (
+                            1.0 / nearness(vis, line * width + x)
+                        )
+                        q = across(basis, p)
+                        low, high = ti.min(low, q), ti.max(high, q)
+                        floor_low, floor_high = ti.min(floor_low, p), ti.max(floor_high, p)
+            at = (task * runs + run) * REACH
             for a in ti.static(range(2)):
                 reach[at + 2 * a] = low[a]
                 reach[at + 2 * a + 1] = high[a]
@@ -61,9 +68,11 @@ def reach_of(view: f2, vis: u64s, basis: f1, views: ti.i32, width: ti.i32, heigh
 
 @ti.kernel
 def widen(reach: f1, views: ti.i32, width: ti.i32, height: ti.i32, wide: f1):
-    """Where each block of an empty set lies, as :func:`reach_of` says it of runs."""
+    """Where each block of an empty set lies, as :func:`reach_of` says it of tiles."""
     runs = (width + RUN - 1) // RUN
     bands = (height + RUN - 1) // RUN
+    tiles = (height + BAND - 1) // BAND
+    each = ti.static(RUN // BAND)
     for task in range(views * bands):
         n, band = task // bands, task % bands
         for run in range(runs):
@@ -71,39 +80,21 @@ def widen(reach: f1, views: ti.i32, width: ti.i32, height: ti.i32, wide: f1):
             for a in ti.static(range(REACH)):
                 far = ti.static(a in HIGH)
                 best = -1e30 if far else 1e30
-                for y in range(band * RUN, ti.min(height, band * RUN + RUN)):
-                    own = reach[((n * height + y) * runs + run) * REACH + a]
+                for tile in range(band * each, ti.min(tiles, band * each + each)):
+                    own = reach[((n * tiles + tile) * runs + run) * REACH + a]
                     best = greater(best, own) if far else lesser(best, own)
                 wide[to + a] = best
 
 
 @ti.func
 def shaded(at, m, reach: ti.template(), frame: ti.template(), size, coarse: ti.template()):
-    """Whether anything of a moment's shadow map may be in the light of a run."""
+    """Whether anything of a moment's shadow map may be in the light of a tile."""
     out = False
-    if size > 1 and reach[at] <= reach[at + 1]:
+    if reach[at] <= reach[at + 1]:
         lift = lift_of(1.0 / frame[m, 2])
-        left = ti.floor((reach[at] - lift - frame[m, 0]) * frame[m, 2])
-        right = ti.floor((reach[at + 1] + lift - frame[m, 0]) * frame[m, 2])
-        low = ti.floor((reach[at + 2] - lift - frame[m, 1]) * frame[m, 2])
-        high = ti.floor((reach[at + 3] + lift - frame[m, 1]) * frame[m, 2])
-        edge = ti.cast(size + BLOCK, ti.f32)
-        if right >= -BLOCK - 1 and left <= edge + 1 and high >= -BLOCK - 1 and low <= edge + 1:
-            if left < 0 or low < 0 or right >= size or high >= size:
-                out = True
-            else:
-                blocks, fine = size >> BLOCK_BITS, size >> FINE_BITS
-                begin = m * coarse_size(size) + 2 * fine * fine
-                i0, i1_ = ti.cast(left, ti.i32) >> BLOCK_BITS, ti.cast(right, ti.i32) >> BLOCK_BITS
-                j0, j1 = ti.cast(low, ti.i32) >> BLOCK_BITS, ti.cast(high, ti.i32) >> BLOCK_BITS
-                if (i1_ - i0 + 1) * (j1 - j0 + 1) > MANY:
-                    out = True
-                else:
-                    z = reach[at + 4] - lift
-                    for j in range(j0, j1 + 1):
-                        for i in range(i0, i1_ + 1):
-                            if z < coarse[begin + j * blocks + i]:
-                                out = True
+        low = vec3(reach[at], reach[at + 2], reach[at + 4]) - lift
+        high = vec3(reach[at + 1], reach[at + 3], 0.0) + lift
+        out = not clear_over(low, high, m, frame, size, coarse)
     return out
 
 
@@ -181,14 +172,17 @@ def find(
     level: i1,
     block: i1,
 ):
-    """Which runs are drawn anew: their level is SHADE, others' DONE. block: 1 where one of its runs is.
+    """Which runs are drawn anew, all of a tile or none: their level is SHADE, others' DONE.
 
+    block: 1 where one of its runs is
     empty: of each view, the picture of the empty set that it goes by, -1 for none; touched: of each run,
     whether something that moves may be in it; box [views, 4]: columns and rows in which there may be
     glass that moves
     """
     runs = (width + RUN - 1) // RUN
     bands = (height + RUN - 1) // RUN
+    tiles = (height + BAND - 1) // BAND
+    each = ti.static(RUN // BAND)
     for task in range(views * bands):
         n, band = task // bands, task % bands
         m, s = moment[n], empty[n]
@@ -200,13 +194,14 @@ def find(
                 clear = not stood_on(at, m, bounds, wide, floor, columns, rows, ground)
                 if clear:
                     clear = not shaded(at, m, wide, frame, size, coarse)
-            for y in range(band * RUN, ti.min(height, band * RUN + RUN)):
-                anew = s < 0
+            for tile in range(band * each, ti.min(tiles, band * each + each)):
+                bottom = ti.min(height, tile * BAND + BAND)
                 x = run * RUN
-                k = (n * height + y) * runs + run
-                if not anew:
+                anew = s < 0
+                for y in range(tile * BAND, bottom):
+                    k = (n * height + y) * runs + run
                     here, there = (n * height + y) * width, (s * height + y) * width
-                    if touched[k] != 0:
+                    if not anew and touched[k] != 0:
                         i = x
                         while i < width and i < x + RUN and not anew:
                             anew = vis[here + i] != empty_vis[there + i]
@@ -219,11 +214,12 @@ def find(
                     if box[n, 2] <= y < box[n, 3] and x < box[n, 1] and x + RUN > box[n, 0]:
                         anew = True
                 if not anew and not clear:
-                    at = ((s * height + y) * runs + run) * REACH
+                    at = ((s * tiles + tile) * runs + run) * REACH
                     anew = stood_on(at, m, bounds, reach, floor, columns, rows, ground)
                     if not anew:
                         anew = shaded(at, m, reach, frame, size, coarse)
-                level[k] = SHADE if anew else DONE
+                for y in range(tile * BAND, bottom):
+                    level[(n * height + y) * runs + run] = SHADE if anew else DONE
                 if anew:
                     some = 1
             block[task * runs + run] = some

@@ -36,6 +36,7 @@ from .lamps import lamplight
 from .light import across, free_between, lit
 from .paint import NOTHING, RUN, SHADE, SHEET, backdrop, developed, exposed, pack_normal, packed, spread
 from .pattern import broad_pattern, glazed
+from .rows import EVERY
 from .sheet import fold_kernel
 
 CLAY_DEPTH = 1.9  # how much deeper the corners are in clay
@@ -95,7 +96,9 @@ def shading_kernels(style: Style) -> SimpleNamespace:
         edge: u32s,
         solid: i1,
         level: i1,
-        views: ti.i32,
+        lines: i1,
+        sparse: ti.i32,
+        left: i1,
         width: ti.i32,
         height: ti.i32,
     ):
@@ -103,8 +106,11 @@ def shading_kernels(style: Style) -> SimpleNamespace:
 
         solid: the triangle + 1 of the set that fills each RUN of pixels alone, 0 for none,
         -1 for the backdrop; level: of each RUN, below SHADE what is there already
+        lines: the rows to shade; sparse: whether only where ``left`` says so, bits of the pixels of each RUN
         """
-        for line in range(views * height):
+        for j in range(lines.shape[0]):
+            line = lines[j]
+            runs = (width + RUN - 1) // RUN
             n = line // height
             y = line % height
             m = moment[n]
@@ -154,12 +160,18 @@ def shading_kernels(style: Style) -> SimpleNamespace:
             stretch = RUN if height > 400 else RUN // 2
             fine = 4 if height > 400 else 2
             whole = False
+            todo = EVERY
             x = 0
             while x < width:
                 if x % RUN == 0:
-                    while x < width and level[line * ((width + RUN - 1) // RUN) + x // RUN] < SHADE:
-                        x += RUN
-                        joined = False
+                    done = True
+                    while done and x < width:
+                        run = line * runs + x // RUN
+                        todo = left[run] if sparse == 1 else EVERY
+                        done = level[run] < SHADE or todo == 0
+                        if done:
+                            x += RUN
+                            joined = False
                     if x >= width:
                         break
                 at = line * width + x
@@ -172,7 +184,7 @@ def shading_kernels(style: Style) -> SimpleNamespace:
                     value = 0
                     if whole and t < static_faces:
                         value = t + 1 if t >= 0 else -1
-                    solid[line * ((width + RUN - 1) // RUN) + x // RUN] = value
+                    solid[line * runs + x // RUN] = value
                 stop = x + 1
                 limit = ti.min(width, (x // stretch + 1) * stretch)
                 if whole:
@@ -180,7 +192,9 @@ def shading_kernels(style: Style) -> SimpleNamespace:
                 else:
                     while stop < limit and triangle(vis, at + stop - x) == t:
                         stop += 1
-                if t < 0:
+                if (todo >> (x % RUN)) & ((1 << (stop - x)) - 1) == 0:
+                    joined = False
+                elif t < 0:
                     last = -1
                     joined = False
                     near_end = backdrop(first + step * ti.cast(x, ti.f32), horizon, zenith, film)
@@ -401,7 +415,8 @@ def shading_kernels(style: Style) -> SimpleNamespace:
                                     q_begin, cell = q_end, cell_end
                                     shade, tone, haze, kind = shade_end, tone_end, haze_end, kind_end
                                     lamp = lamp_end
-                        clear = True
+                        # whether nothing that moves, and nothing of the set, can be in the light
+                        clear, own_clear = True, True
                         key = facing
                         if ti.static(shadows):  # noqa: SIM102
                             if facing > 0:
@@ -424,12 +439,11 @@ def shading_kernels(style: Style) -> SimpleNamespace:
                                             between = MIXED
                                 if between == DARK:
                                     key = 0.0
-                                elif between == MIXED:
-                                    clear = False
                                 else:
+                                    own_clear = between == LIT
                                     off = n_l * lift + vec3(0, 0, rise)
                                     clear = free_between(q_begin + off, q_end + off, m, frame, size, coarse)
-                        if flat and clear:
+                        if flat and clear and own_clear:
                             start = paint_end
                             if not (joined and painted):
                                 start = exposed(
@@ -483,17 +497,18 @@ def shading_kernels(style: Style) -> SimpleNamespace:
                                     if ti.static(shadows):
                                         nn_l = across(basis, nn)
                                 if ti.static(shadows):  # noqa: SIM102
-                                    if key_light > 0 and not clear:
+                                    if key_light > 0 and not (clear and own_clear):
                                         q = eye_l + (first_l + step_l * ti.cast(xx, ti.f32)) * depth
-                                        key_light *= lit(
-                                            q + nn_l * lift + vec3(0, 0, rise),
-                                            m,
-                                            frame,
-                                            size,
-                                            depth_map,
-                                            coarse,
-                                        )
-                                        if key_light > 0 and shadow != LIT:
+                                        if not clear:
+                                            key_light *= lit(
+                                                q + nn_l * lift + vec3(0, 0, rise),
+                                                m,
+                                                frame,
+                                                size,
+                                                depth_map,
+                                                coarse,
+                                            )
+                                        if key_light > 0 and not own_clear:
                                             key_light *= lit(
                                                 q + nn_l * set_lift + vec3(0, 0, set_rise),
                                                 0,

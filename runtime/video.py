@@ -13,6 +13,7 @@ import contextlib
 import os
 from collections.abc import Iterable, Iterator
 from fractions import Fraction
+from functools import partial
 from pathlib import Path
 from types import TracebackType
 from typing import Any
@@ -23,8 +24,12 @@ import numpy as np
 from av.error import FFmpegError
 from numpy.typing import NDArray
 
-#: Thread count of the encoder; four keep two cores busy.
-ENCODER_THREADS = 4
+from .worker import Worker
+
+#: So many frames may wait for the encoder: what a renderer draws in one launch.
+FRAMES_WAITING = 12
+#: Threads of the encoder, beside the renderer's. Four take a tenth more processor time, for larger files.
+ENCODER_THREADS = 2
 #: x264's settings. Of its fastest, with what a drawn picture needs most beside: arithmetic coding, a filter
 #: against blocks, and bits for what later frames are made of. Measured on takes at 720p: 0.4 times the
 #: processor time of its preset "veryfast", for files half as large again that look the same.
@@ -126,19 +131,24 @@ class VideoWriter:
 
 
 def write_video(path: str | Path, frames: Iterable[NDArray[np.uint8]], fps: tuple[int, int]) -> int:
-    """Write all frames (uint8 [H, W, 3] each) and return how many there were."""
+    """Write all frames (uint8 [H, W, 3] each) and return how many there were.
+
+    Each is encoded while the next ones are made; nobody writes to one that was given.
+    """
     writer: VideoWriter | None = None
-    try:
-        for frame in frames:
-            writer = writer or VideoWriter(path, (frame.shape[1], frame.shape[0]), fps)
-            writer.write(frame)
-    except BaseException:
-        if writer is not None:
-            writer.discard()
-        raise
-    if writer is None:
-        raise VideoError(f"cannot write {path}: a video needs at least one frame")
-    writer.close()
+    with Worker(FRAMES_WAITING) as worker:
+        try:
+            for frame in frames:
+                writer = writer or VideoWriter(path, (frame.shape[1], frame.shape[0]), fps)
+                worker.do(partial(writer.write, frame))
+            if writer is None:
+                raise VideoError(f"cannot write {path}: a video needs at least one frame")
+            worker.do(writer.close)
+            worker.wait()
+        except BaseException:
+            if writer is not None:
+                worker.undo(writer.discard)
+            raise
     return writer.frames
 
 

@@ -10,7 +10,7 @@ import pytest
 from typer.testing import CliRunner
 
 import vdsl
-from runtime.video import read_video, video_info
+from runtime.video import VideoError, VideoWriter, read_video, video_info
 from vdsl.cli import app
 from vdsl.lang import Settings
 
@@ -184,6 +184,26 @@ def test_a_failing_run_leaves_the_last_good_build(built, monkeypatch):
 
     monkeypatch.setattr("vdsl.pipeline.shooting.write_take", full)
     done = run("compile", folder / "story.vds", "-o", folder / "out", "--rank", "geometry", "--seed", "9")
+    assert done.exit_code == 3
+    assert "disk is full" in done.output
+    assert _documents(folder / "out") == before
+    assert not list(folder.glob(".out.new*"))
+
+
+@pytest.mark.parametrize("method", ["write", "close"])
+def test_an_encoder_that_fails_beside_the_drawing_fails_the_run(built, monkeypatch, method):
+    folder, _, _ = built
+    before = _documents(folder / "out")
+    wanted, works = "take-2.mp4", getattr(VideoWriter, method)
+
+    def fails(writer: VideoWriter, *frame: object) -> None:
+        if writer.path.name == wanted:
+            raise VideoError(errno.ENOSPC, "No space left on device", wanted)
+        works(writer, *frame)
+
+    monkeypatch.setattr(VideoWriter, method, fails)
+    arguments = ("--rank", "geometry", "--seed", "9", "--no-cache")
+    done = run("compile", folder / "story.vds", "-o", folder / "out", *arguments)
     assert done.exit_code == 3
     assert "disk is full" in done.output
     assert _documents(folder / "out") == before

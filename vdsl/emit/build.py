@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 
 from .page import write_page
@@ -13,15 +14,22 @@ from .types import Build
 from .video import WritePart, write_animatic, write_part
 
 
-def write_build(folder: Path, build: Build, part_to: WritePart = write_part) -> None:
-    """Write tracks, animatic, sheet, plans, ``storyboard.json`` and page beside the takes in ``folder``.
+def write_build(
+    folder: Path,
+    build: Build,
+    part_to: WritePart = write_part,
+    films: Callable[[], object] = lambda: None,
+) -> None:
+    """Write tracks, sheet, plans, page, ``storyboard.json`` and animatic beside the takes in ``folder``.
 
     part_to: writes those parts of the animatic that are encoded again, or has them from where they were kept
+    films: waits until the takes' films are there, which are needed only at the end
     ``report.json`` is written last by whoever measured the run (:mod:`vdsl.emit.report_json`).
     """
     write_tracks(folder, build)
-    write_animatic(folder / "animatic.mp4", build, part_to)
     write_sheets(folder, build)
     write_plans(folder, build)
     write_page(folder / "index.html", build)
     write_storyboard(folder / "storyboard.json", build)
+    films()
+    write_animatic(folder / "animatic.mp4", build, part_to)

@@ -9,13 +9,15 @@ from __future__ import annotations
 import shutil
 import tempfile
 from collections.abc import Callable, Iterable, Iterator, Sequence
+from functools import partial
 from pathlib import Path
 
 import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from runtime.video import VideoError, VideoWriter, join_videos, read_video, write_video
+from runtime.video import FRAMES_WAITING, VideoError, VideoWriter, join_videos, read_video, write_video
+from runtime.worker import Worker
 
 from .burnin import BurnIn, burn
 from .folder import write_bytes
@@ -45,38 +47,76 @@ def write_take(
     strip: BurnIn | None = None,
     guides: Guides = NO_GUIDES,
     keyed: bool = False,
+    worker: Worker | None = None,
+    finished: Callable[[TakeMedia], object] = lambda media: None,
 ) -> TakeMedia:
     """Encode a take and its poster. Only the best take of a shot keeps keyframes: the sheet shows no other.
 
-    frames: ``count`` pictures uint8 [H, W, 3]; strip: what to write on every frame, if anything
-    guides: what to draw over every frame; keyed: keep the keyframes of this one whatever its rank
+    frames: ``count`` pictures uint8 [H, W, 3], which nobody writes to any more; strip: what to write on every
+    frame, if anything; guides: what to draw over every frame; keyed: keep the keyframes of this one whatever
+    its rank; worker: encodes while the next frames are drawn and after the return: the files are there once
+    its work is done. Without one they are there at once. finished: called by the worker when they are
     """
+    if worker is None:
+        with Worker(FRAMES_WAITING) as own:
+            return write_take(folder, shot, rank, frames, count, fps, strip, guides, keyed, own, finished)
     video, poster, _ = take_paths(folder, shot, rank)
     video.parent.mkdir(parents=True, exist_ok=True)
     wanted = key_frames(count)
     keys: dict[int, NDArray[np.uint8]] = {}
-    writer: VideoWriter | None = None
+    take = _Developing(video, poster, wanted[1], fps, strip, guides)
+    drawn = 0
     try:
-        for i, frame in enumerate(frames):
-            picture = guided(frame, guides)
-            picture = burn(picture, strip, i) if strip is not None else picture
-            if writer is None:
-                writer = VideoWriter(video, (picture.shape[1], picture.shape[0]), fps)
-            writer.write(picture)
-            if i in wanted and (keyed or rank == 1):
-                keys[i] = reduced(frame)
-            if i == wanted[1]:
-                write_poster(poster, picture)
-        if writer is None or writer.frames != count:
-            raise ValueError(
-                f"{shot} take {rank}: expected {count} frames, got {writer.frames if writer else 0}"
-            )
-        writer.close()
+        for drawn, frame in enumerate(frames, start=1):
+            worker.do(partial(take.add, drawn - 1, frame), take.discard)
+            if drawn - 1 in wanted and (keyed or rank == 1):
+                keys[drawn - 1] = reduced(frame)
+        if drawn != count:
+            raise ValueError(f"{shot} take {rank}: expected {count} frames, got {drawn}")
+        media = TakeMedia(video, poster, count, tuple(keys[i] for i in wanted if i in keys))
+        worker.do(take.close, take.discard)
     except BaseException:
-        if writer is not None:
-            writer.discard()
+        worker.undo(take.discard)
         raise
-    return TakeMedia(video, poster, count, tuple(keys[i] for i in wanted if i in keys))
+    worker.do(partial(finished, media))
+    return media
+
+
+class _Developing:
+    """A take's film and poster in the making. poster_at: the frame that is the poster"""
+
+    def __init__(
+        self,
+        video: Path,
+        poster: Path,
+        poster_at: int,
+        fps: tuple[int, int],
+        strip: BurnIn | None,
+        guides: Guides,
+    ) -> None:
+        self._video, self._poster, self._poster_at = video, poster, poster_at
+        self._fps, self._strip, self._guides = fps, strip, guides
+        self._writer: VideoWriter | None = None
+
+    def add(self, index: int, frame: NDArray[np.uint8]) -> None:
+        """Encode a frame, uint8 [H, W, 3], with what is written and drawn over it."""
+        picture = guided(frame, self._guides)
+        picture = burn(picture, self._strip, index) if self._strip is not None else picture
+        if self._writer is None:
+            self._writer = VideoWriter(self._video, (picture.shape[1], picture.shape[0]), self._fps)
+        self._writer.write(picture)
+        if index == self._poster_at:
+            write_poster(self._poster, picture)
+
+    def close(self) -> None:
+        """Finish the film."""
+        assert self._writer is not None
+        self._writer.close()
+
+    def discard(self) -> None:
+        """Drop the film unless it is finished."""
+        if self._writer is not None:
+            self._writer.discard()
 
 
 def write_poster(path: Path, frame: NDArray[np.uint8]) -> None:

@@ -17,6 +17,9 @@ from time import perf_counter
 
 import numpy as np
 
+from runtime.video import FRAMES_WAITING
+from runtime.worker import Worker
+
 from ..emit.build import write_build
 from ..emit.folder import staged_build
 from ..emit.plan_ground import Ground, ground_of
@@ -113,7 +116,7 @@ def compile_file(
     with clock.spent("check", 1, quiet=True):
         checked, choices = _checked(path, options)
         warn_of_letters(checked.storyboard, checked.report)
-    with staged_build(folder, one_at_a_time) as staging:
+    with staged_build(folder, one_at_a_time) as staging, Worker(FRAMES_WAITING) as worker:
         known = wishes(folder, choices.depends)
         wanted = with_further(known, options.further, checked.storyboard, choices.depends)
         if options.further:  # else they are carried over as they are by then
@@ -128,12 +131,13 @@ def compile_file(
             workshop.camerawork(options.device),
             partial(workshop.judge, options, clock),
             clock,
+            worker,
             {shot: wish.takes for shot, wish in wanted.items()},
         )
         build = _Filming(run, choices).build()
         _warn_of_poor_shots(build.shots, checked.report)
         with clock.spent("write", len(build.shots), quiet=True):
-            write_build(staging, build, kept_parts(cache))
+            write_build(staging, build, kept_parts(cache), worker.wait)
         report = _report(perf_counter() - started, clock, run, tuple(t.text for t in build.trades))
         write_report(staging / "report.json", report)
         asked = {shot: wanted[shot].takes for shot in options.further if shot in wanted}

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 from numpy.typing import NDArray
@@ -104,7 +103,7 @@ class Camerawork:
         size: tuple[int, int],
         shutter: float = 0.0,
     ) -> Iterator[NDArray[np.uint8]]:
-        """Every frame of a take in order, uint8 [H, W, 3]; the next few are drawn while one is used.
+        """Every frame of a take in order, uint8 [H, W, 3]; a few are drawn at a time.
 
         shutter: degrees that it is open, for motion blur; 0 for none
         """
@@ -121,13 +120,8 @@ class Camerawork:
             views = Views(taken, np.arange(len(frames), dtype=np.int32), hidden, levels)
             return renderer.render(story_palettes(staged, story, frames), views, size).color
 
-        with ThreadPoolExecutor(max_workers=1) as ahead:
-            upcoming = ahead.submit(draw, 0)
-            for begin in range(0, story.frames, _FRAMES_A_LAUNCH):
-                drawn = upcoming.result()
-                if begin + _FRAMES_A_LAUNCH < story.frames:
-                    upcoming = ahead.submit(draw, begin + _FRAMES_A_LAUNCH)
-                yield from drawn
+        for begin in range(0, story.frames, _FRAMES_A_LAUNCH):
+            yield from draw(begin)
 
     def frames_at(
         self,

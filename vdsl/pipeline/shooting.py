@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from runtime.body.skeleton import JOINT
+from runtime.worker import Worker
 
 from ..emit.burnin import BurnIn
 from ..emit.stills import read_keys, write_keys, write_stills
@@ -99,6 +100,7 @@ class Judged:
 class Run:
     """What shots are made with. judge: asked for when somebody has to judge
 
+    worker: encodes films beside all else; a film is in the folder once its work is done
     further: how many takes are wanted in all of shots of which there are to be more, by their ids
     """
 
@@ -110,6 +112,7 @@ class Run:
     camerawork: Camerawork
     judge: Callable[[], Judge]
     clock: StageClock
+    worker: Worker
     further: Mapping[str, int] = field(default_factory=dict)
 
 
@@ -288,7 +291,7 @@ class Shooting:
     def film(
         self, line: StoryLine, shot: Shot, kept: Kept, rank: int, chosen: bool, start: Callable[[int], int]
     ) -> BuiltTake:
-        """A take with its film and still in the build's folder.
+        """A take with its film and still in the build's folder, once the run's worker is done.
 
         start: gives the take's first frame in the film by its length; asked where that is in the picture
         """
@@ -304,33 +307,55 @@ class Shooting:
         return not self.run.options.burn_in and self.run.cache.has(self._film_key(line, shot, kept, None))
 
     def _filmed(self, line: StoryLine, shot: Shot, kept: Kept, rank: int, strip: BurnIn | None) -> TakeMedia:
+        """The files of a take, which may still be in the making."""
         folder, cache = self.run.folder, self.run.cache
         video, poster, _ = take_paths(folder, shot.id, rank)
         keys = folder / "shots" / shot.id / f".{rank}-{_KEYS}"
         key = self._film_key(line, shot, kept, strip)
         if not cache.take(key, {"take.mp4": video, "take.jpg": poster, _KEYS: keys}):
             self.run.clock.begin("film", kept.frames, UNITS["film"])
-            with self.run.clock.spent("film", kept.frames):  # told only when it cannot be lost
-                self._draw(line, shot, kept, rank, strip, keys)
+
+            def keep(media: TakeMedia) -> None:
+                write_keys(keys, media.keys)
                 cache.put(key, {"take.mp4": video, "take.jpg": poster, _KEYS: keys})
+                keys.unlink()
+
+            with self.run.clock.spent("film", kept.frames):  # told only when it is sure to be kept
+                media = self._draw(line, shot, kept, rank, strip, keep)
+            return replace(media, keys=media.keys if rank == 1 else ())
         shown = read_keys(keys) if rank == 1 else ()
         keys.unlink()
         return TakeMedia(video, poster, kept.frames, shown)
 
     def _draw(
-        self, line: StoryLine, shot: Shot, kept: Kept, rank: int, strip: BurnIn | None, keys: Path
-    ) -> None:
-        """Draw and encode one take."""
+        self,
+        line: StoryLine,
+        shot: Shot,
+        kept: Kept,
+        rank: int,
+        strip: BurnIn | None,
+        keep: Callable[[TakeMedia], None],
+    ) -> TakeMedia:
+        """Draw one take; it is encoded and kept while the next one is drawn."""
         run, act = self.run, self.run.acts.act(line)
         story = self._story(line, shot, kept)
         size, fps = run.storyboard.size, run.storyboard.fps
         frames = run.camerawork.take_frames(
             act.staged, shot.style, story, kept.camera, size, run.options.shutter
         )
-        media = write_take(
-            run.folder, shot.id, rank, frames, story.frames, fps, strip, run.options.guides, keyed=True
+        return write_take(
+            run.folder,
+            shot.id,
+            rank,
+            frames,
+            story.frames,
+            fps,
+            strip,
+            run.options.guides,
+            keyed=True,
+            worker=run.worker,
+            finished=keep,
         )
-        write_keys(keys, media.keys)
 
     def sketch(self, line: StoryLine, shot: Shot, kept: Kept, chosen: bool) -> BuiltTake:
         """A take as three pictures, without a film."""

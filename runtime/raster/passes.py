@@ -104,8 +104,6 @@ class Passes:
             lines = np.ascontiguousarray(between[:, 0])
             self._shade_rows(loaded, moments, layer, seen, size, lines, left, True)
         extent = (views, *size)
-        if loaded.sunlight is not None:
-            self._lay_sunlight(loaded, moments, layer, seen, size)
         if self._style.hatch:
             places = (a["vertices"], a["rest"], moments.position, a["faces"])
             counts = (scene.static_faces, loaded.static_vertices)
@@ -128,9 +126,10 @@ class Passes:
         left: Any,
         sparse: bool,
     ) -> None:
-        """Light of some rows. sparse: only of what is left"""
+        """Light of some rows, and what falls on them through windows. sparse: only of what is left"""
         view, moment, _ = seen
         a, scene = loaded.arrays, loaded.scene
+        rows = (self._upload(lines), int(sparse), left)
         self.shading.rows(
             view,
             moment,
@@ -173,11 +172,11 @@ class Passes:
             layer.edge,
             layer.solid,
             layer.level,
-            self._upload(lines),
-            int(sparse),
-            left,
+            *rows,
             *size,
         )
+        if loaded.sunlight is not None:
+            self._lay_sunlight(loaded, moments, layer, seen, rows, size)
 
     def _match(self, layer: Layer, rows: NDArray[np.int32], left: Any, size: tuple[int, int]) -> None:
         """Colours of rows that lie between shaded ones; ``left``: what cannot be had from those."""
@@ -196,10 +195,11 @@ class Passes:
         moments: Moments,
         layer: Layer,
         seen: tuple[Any, Any, int],
+        rows: tuple[Any, int, Any],
         size: tuple[int, int],
     ) -> None:
-        """What falls through windows, over the shaded picture."""
-        sun, a, (view, moment, views) = loaded.sunlight, loaded.arrays, seen
+        """What falls through windows, over shaded rows."""
+        sun, a, (view, moment, _) = loaded.sunlight, loaded.arrays, seen
         assert sun is not None
         self._sunlight.lay_sun(
             view,
@@ -208,8 +208,9 @@ class Passes:
             *(sun.shadow.frame, sun.shadow.size, sun.shadow.depth, sun.shadow.coarse),
             *(moments.frame, moments.size, moments.depth, moments.coarse),
             *(sun.plot, sun.begin, sun.side, sun.chart, sun.whole, loaded.scene.static_faces),
-            *(self.linear, self.table, layer.vis, layer.level, layer.picture),
-            *(views, *size),
+            *(self.linear, self.table, layer.vis, layer.level, layer.solid, layer.picture),
+            *rows,
+            *size,
         )
 
     def draw_lines(self, loaded: Loaded, layer: Layer, view: Any, views: int, size: tuple[int, int]) -> None:

@@ -69,3 +69,18 @@ def test_who_stands_in_the_sun_throws_a_shadow_in_the_patch(renderer: Renderer) 
     more = drawn(renderer, 0.8, WALL, [ball]) - drawn(renderer, 0.0, WALL, [ball])
     assert more[at(0.0, 1.55)] < 8
     assert more[at(0.38, 1.55)] > 30
+
+
+def test_rows_that_are_shaded_later_keep_the_sun(renderer: Renderer) -> None:
+    """What is shaded along with pixels that are left, in rows between shaded ones, is in the sun as well."""
+    poles = [
+        sphere((x, 1.5, 0.25), (0.03, 0.03, 0.25), (0.8, 0.2, 0.2), rings=6) for x in (-0.3, -0.1, 0.1, 0.3)
+    ]
+    more = drawn(renderer, 0.8, WALL, poles) - drawn(renderer, 0.0, WALL, poles)
+    assert (more > 25).mean() > 0.03
+    for thick in (1, 2):
+        above, below = more[: -1 - thick], more[1 + thick :]
+        for k in range(1, thick + 1):
+            between = more[k : k - 1 - thick]
+            assert not ((above > 25) & (below > 25) & (between < 5)).any()
+    assert more.max() < 1.3 * more[at(0.0, 1.2)]

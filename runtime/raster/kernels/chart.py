@@ -20,6 +20,7 @@ MIXED, LIT, DARK = 0, 1, 2  # how the set shades a place
 SHADOW_SHIFT = 16  # of a whole triangle: it sits above the flags of a sheet
 CELL = 0.1  # metres along an edge of a triangle, where that is fewer than MOST_CELLS
 MOST_CELLS = 64  # along an edge
+MOST_ALONG = 16  # cells that are looked at between two places
 PLOT = 8  # numbers kept of each triangle: see :func:`plots`
 
 
@@ -107,3 +108,25 @@ def cell_at(t, p, plot: ti.template(), side):
     y = plot[at + 4] * p.x + plot[at + 5] * p.y + plot[at + 6] * p.z + plot[at + 7]
     most = ti.cast(side, ti.f32) - 1.0
     return ti.Vector([ti.cast(bounded(x, 0.0, most), ti.i32), ti.cast(bounded(y, 0.0, most), ti.i32)])
+
+
+@ti.func
+def kind_along(
+    t, begin_at, end_at, cell, cell_end, plot: ti.template(), begin: ti.template(), side, chart: ti.template()
+):
+    """The kind of all cells of a triangle between two places in ``cell`` and ``cell_end``, as far as that can
+    be said from a few of them; MIXED where they differ."""
+    kind = ti.cast(chart[begin[t] + cell[1] * side + cell[0]], ti.i32)
+    if kind != ti.cast(chart[begin[t] + cell_end[1] * side + cell_end[0]], ti.i32):
+        kind = MIXED
+    if kind != MIXED:
+        away = ti.max(ti.abs(cell_end[0] - cell[0]), ti.abs(cell_end[1] - cell[1]))
+        first = kind
+        if away > MOST_ALONG:
+            kind = MIXED
+        for k in range(1, ti.min(away, MOST_ALONG)):
+            part = ti.cast(k, ti.f32) / ti.cast(away, ti.f32)
+            here = cell_at(t, begin_at + (end_at - begin_at) * part, plot, side)
+            if ti.cast(chart[begin[t] + here[1] * side + here[0]], ti.i32) != first:
+                kind = MIXED
+    return kind

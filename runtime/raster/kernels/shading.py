@@ -13,7 +13,7 @@ import taichi as ti
 
 from ..types import Style
 from .ambient import area_near, lift_of, rise_of, sheltered, toned
-from .chart import DARK, LIT, MIXED, SHADOW_SHIFT, cell_at, survey
+from .chart import DARK, LIT, MIXED, SHADOW_SHIFT, cell_at, kind_along, survey
 from .geometry import (
     bounded,
     f1,
@@ -106,7 +106,8 @@ def shading_kernels(style: Style) -> SimpleNamespace:
 
         solid: the triangle + 1 of the set that fills each RUN of pixels alone, 0 for none,
         -1 for the backdrop; level: of each RUN, below SHADE what is there already
-        lines: the rows to shade; sparse: whether only where ``left`` says so, bits of the pixels of each RUN
+        lines: the rows to shade; sparse: whether only where ``left`` says so, bits of the pixels of each RUN,
+        to which are added those that are shaded along with them
         """
         for j in range(lines.shape[0]):
             line = lines[j]
@@ -192,7 +193,10 @@ def shading_kernels(style: Style) -> SimpleNamespace:
                 else:
                     while stop < limit and triangle(vis, at + stop - x) == t:
                         stop += 1
-                if (todo >> (x % RUN)) & ((1 << (stop - x)) - 1) == 0:
+                bits = ((1 << (stop - x)) - 1) << (x % RUN)
+                if sparse == 1 and todo & bits != 0:
+                    left[line * runs + x // RUN] |= bits
+                if todo & bits == 0:
                     joined = False
                 elif t < 0:
                     last = -1
@@ -425,18 +429,9 @@ def shading_kernels(style: Style) -> SimpleNamespace:
                                 if kind != kind_end:
                                     between = MIXED
                                 elif shadow == MIXED and kind != MIXED:
-                                    away = ti.max(
-                                        ti.abs(cell_end[0] - cell[0]), ti.abs(cell_end[1] - cell[1])
+                                    between = kind_along(
+                                        t, begin_at, end_at, cell, cell_end, plot, begin, side[t], chart
                                     )
-                                    if away > 16:
-                                        between = MIXED
-                                    for k in range(1, ti.min(away, 16)):
-                                        part = ti.cast(k, ti.f32) / ti.cast(away, ti.f32)
-                                        here = cell_at(
-                                            t, begin_at + (end_at - begin_at) * part, plot, side[t]
-                                        )
-                                        if chart[begin[t] + here[1] * side[t] + here[0]] != kind:
-                                            between = MIXED
                                 if between == DARK:
                                     key = 0.0
                                 else:

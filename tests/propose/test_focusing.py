@@ -104,6 +104,28 @@ def test_a_rack_that_is_not_seen_is_not_offered() -> None:
     assert not away.cameras  # a cupboard stands between the two
 
 
+@pytest.mark.parametrize(("who", "at"), [("anna", 0), ("ben", -1)])
+def test_nothing_stands_before_a_person_while_in_focus(who: str, at: int) -> None:
+    """Posts stand around both of them: a thin one may not even halve a head or a breast."""
+    acted = two()
+    around = np.arange(4) * (np.pi / 2)
+    posts = [
+        (x + 0.8 * np.cos(a), y + 0.8 * np.sin(a), 1.25, 0.05, 0.05, 1.25, 0.0)
+        for x, y in ((0.0, 0.0), (-2.2, 0.5))
+        for a in around
+    ]
+    grid = propose_cameras(shot("rack-focus", "medium", focus_to=BEN), [acted], filming(boxes=tuple(posts)))
+    assert len(grid.cameras) >= 4
+    eye = eyes(who, acted)[at]
+    for c in grid.cameras:
+        camera, right = c.track.position[at], camera_axes(c.track.rotation[at])[0]
+        for aside, up in ((-0.1, 0.0), (0.0, 0.0), (0.1, 0.0), (-0.14, -0.3), (0.14, -0.3)):
+            line = (eye + aside * right + (0.0, 0.0, up) - camera) * np.linspace(0.0, 0.9, 400)[:, None]
+            for x, y, *_ in posts:
+                away = np.abs((camera + line)[:, :2] - (x, y)).max(axis=1)
+                assert away.min() > 0.05, "a post is before the one in focus"
+
+
 def test_focus_on_a_spot_is_on_the_spot() -> None:
     table = thing(3, "table", (1.0, -0.4, 0.0), (2.2, 0.4, 0.8), (Spot("end", (2.2, 0.0, 0.8)),))
     focus = Target("spot", ("table", "end"), "table.end", SPAN)

@@ -14,6 +14,8 @@ from .moves import RACK, family, of_camera
 AZIMUTHS = 8
 #: How far a camera of ``rig cinema`` may stand off its azimuth, degrees.
 ASIDE = 9.0
+#: The same where two have to be in the picture, at the ends of a rack-focus: half way to the next azimuth.
+ALL_AROUND = 180.0 / AZIMUTHS
 #: How far off the middle one who looks sideways may be put, share of the frame's width (``rig cinema``).
 LEAD = 0.13
 #: Focal lengths of films, mm (section 3.2).
@@ -106,8 +108,9 @@ def subspace(
     degrees = tuple(360.0 * k / AZIMUTHS for k in range(AZIMUTHS))
     free = [Variable("φ", "azimuth off the subject's heading", "°", grid=degrees)]
     if cinema:
+        aside = ALL_AROUND if RACK in movement.split("+") else ASIDE
         free += [
-            Variable("Δφ", "off that azimuth", "°", -ASIDE, ASIDE),
+            Variable("Δφ", "off that azimuth", "°", -aside, aside),
             Variable("f", "focal length at the first frame", "mm", *lens, _only(lens)),
             Variable("lead", "off the middle, towards where nobody looks", "of the width", 0.0, LEAD),
         ]

@@ -29,7 +29,7 @@ from .rejection import REASONS, SOFT, no_room, reasons
 from .shooting import shoot
 from .subjects import Filming as Filming
 from .subjects import find_object as find_object
-from .subjects import foci_of, pillars_of
+from .subjects import foci_of, held_by, pillars_of
 from .subjects import subject_of as subject_of
 from .types import CameraProposal, ProposalGrid, StoryProposal
 
@@ -37,7 +37,8 @@ Array = NDArray[np.float64]
 
 _ROUNDS = 8
 _HOPE = 0.6  # of the share that was good so far: what is counted on in the next round
-_MOST = 12  # candidates in one round, for each that is wanted
+_LEAST, _MOST = 0.05, 12  # the least share counted on, and candidates in one round for each that is wanted
+_RACKED = 3  # times as many where two have to be seen well, at the ends of a rack-focus
 _FEW = 8  # with fewer takes than this, ones that only look less well are let back in
 
 
@@ -63,10 +64,11 @@ def propose_cameras(shot: Shot, stories: Sequence[StoryProposal], filming: Filmi
     rejected: Counter[str] = Counter()
     considered, good, wanted = 0, 0, shot.proposals
     few = min(_FEW, wanted)
+    hard = 1 if shot.focus_to is None else _RACKED
     for number in range(_ROUNDS + 1):
         # a few more than are wanted: another round costs more than they do
-        share = max(_HOPE * good / considered, 0.05) if considered else 0.75
-        count = int(np.clip((wanted - good) / share, 16, _MOST * wanted))
+        share = max(_HOPE * good / considered, _LEAST / hard) if considered else 0.75
+        count = int(np.clip((wanted - good) / share, 16, hard * _MOST * wanted))
         rng = generator(filming.seed, shot.drawn_as, f"cameras {number}")
         sample = draw(shot, len(stories), count, rng)
         if number == _ROUNDS:  # what the grid has no room for may have some beside it
@@ -160,11 +162,8 @@ def try_cameras(
     measured = measure(takes, subject, filming.world, filming.fps)
     reason[kept] = reasons(left, measured, subject)
     if foci.end is not None:
-        goal = shot.focus_to.path[-1] if shot.focus_to is not None else ""
-        pillars = [(foot[at], crown[at], r) for foot, crown, r in pillars_of(shot, story, {goal})]
-        item = find_object(filming.world, shot.focus_to) if shot.focus_to is not None else None
-        own = item.id if item is not None else None
-        lost = unseen_racks(left, foci, solids, measured.hidden, pillars, at, own)
+        held = held_by(shot, subject, story, filming, foci)
+        lost = unseen_racks(left, foci, held, solids, measured.hidden, at)
         soft = np.isin(reason[kept], (-1, *SOFT))  # else they might be let back in
         reason[kept[lost & soft]] = REASONS.index("wrong_movement")
     return Tried(shooting, reason, kept, measured)

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from ..cinema.subspaces import AZIMUTHS, BEFORE
+from ..cinema.subspaces import ALL_AROUND, ASIDE, AZIMUTHS, BEFORE
 from ..lang.ir import Shot
 
 
@@ -76,16 +76,17 @@ def draw(shot: Shot, stories: int, count: int, rng: np.random.Generator) -> Samp
         turn=spread(),
         travel=spread(),
         lead=spread(),
-        jitter=spread(),
+        jitter=spread() if shot.focus_to is None else 0.5 + _ASIDE * (spread() - 0.5),
         reach=np.ones(count),
         lam_too=np.asarray(shot.ease, float)[pick(len(shot.ease))],
         noise=rng.integers(2**31, size=count),
     )
 
 
-#: How far nudged cameras go: times the usual way off their azimuth (half way to the next one), and shares of
-#: the solved distance, well within what ``wrong_size`` allows.
-_ASIDE = 2.5
+#: How far nudged cameras, and those of a rack-focus, stand off their azimuth: times the usual way, which is
+#: half way to the next one. Nudged ones go by shares of the solved distance, well within what ``wrong_size``
+#: allows.
+_ASIDE = ALL_AROUND / ASIDE
 _NEARER, _FARTHER = 0.88, 1.2
 
 

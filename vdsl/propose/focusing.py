@@ -25,6 +25,11 @@ from .candidates import Shooting
 _EDGE = 0.05  # of the picture's width and height within which the other one is not looked for
 _HALF_HEAD = 0.14  # m
 _SEEN = 0.75  # of the looks at it, in the part of the take in which it is sharp
+_RESTS = 0.4  # of the take at its start and at its end, in which what is sharp then is looked at
+#: Of somebody, metres to the side and up from the eyes: across the head, and across the breast.
+_OUTLINE = np.array(
+    [(x, 0.0) for x in (0.0, -0.06, 0.06, -0.12, 0.12)] + [(x, -0.3) for x in (0.0, -0.07, 0.07, -0.14, 0.14)]
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,6 +39,20 @@ class Foci:
 
     start: tuple[Array, ...]
     end: Array | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Held:
+    """What a rack-focus rests on: points [T, 3], eyes where it is a person.
+
+    others: everybody else as (foot [T, 3], crown [T, 3], radius)
+    own: the object it is, which does not hide it
+    """
+
+    points: Array
+    person: bool
+    others: Sequence[tuple[Array, Array, float]]
+    own: int | None = None
 
 
 def focused(shooting: Shooting, shot: Shot, foci: Foci, fps: float) -> Shooting:
@@ -73,33 +92,45 @@ def _told(track: CameraTrack, foci: Foci, aperture: Array, least: float = TOLD) 
 def unseen_racks(
     shooting: Shooting,
     foci: Foci,
+    held: tuple[Held | None, Held | None],
     solids: Solids,
     hidden: NDArray[np.bool_],
-    people: Sequence[tuple[Array, Array, float]],
     at: NDArray[np.int64],
-    ignore: int | None,
 ) -> NDArray[np.bool_]:
-    """Rack-focuses [P] that end on what is out of the picture or hidden, or that hardly change anything.
+    """Rack-focuses [P] from or to what is out of the picture or hidden while it is sharp, or that hardly
+    change anything.
 
-    hidden: [P, W] walls taken away; people: (foot, crown, radius) of all but the one the focus goes to,
-    [F, 3] at the frames ``at``; ignore: the object it goes to
+    held: what is sharp at first and in the end, None where that needs no looking at
+    hidden: [P, W] walls taken away; at: [F] frames looked at
     """
     racks = np.array([RACK in movement.split("+") for movement in shooting.movements])
     if foci.end is None or not racks.any():
         return np.zeros(len(racks), bool)
     track = shooting.track
-    late = at >= 0.6 * at[-1]
-    frames, goal = at[late], foci.end[at[late]][:, None]  # [F, 1, 3]
-    camera = track.position[:, frames]
-    axes = camera_axes(track.rotation[:, frames])
-    xy, depth = project(goal[None], camera, axes, track.focal[:, frames], track.sensor)
+    aperture = np.broadcast_to(np.asarray(track.aperture, float), racks.shape)
+    lost = ~_told(track, foci, np.maximum(aperture, 1e-3))
+    spans = (at[at <= _RESTS * at[-1]], at[at >= (1.0 - _RESTS) * at[-1]])
+    for one, frames, end in zip(held, spans, (0, -1), strict=True):
+        if one is not None:
+            seen = _seen(track, one, solids, hidden, frames)
+            lost |= ~((seen.mean(axis=1) >= _SEEN) & seen[:, end])
+    return np.asarray(racks & lost)
+
+
+def _seen(
+    track: CameraTrack, one: Held, solids: Solids, hidden: NDArray[np.bool_], frames: NDArray[np.int64]
+) -> NDArray[np.bool_]:
+    """Whether it is in the picture and nothing is before it, [P, F]; of somebody the head and the breast."""
+    points = one.points[frames][:, None]  # [F, 1, 3]
+    camera, axes = track.position[:, frames], camera_axes(track.rotation[:, frames])
+    xy, depth = project(points[None], camera, axes, track.focal[:, frames], track.sensor)
     # as much as half a head with its hair stays off the sides, however near it is
     half = _HALF_HEAD * track.focal[:, frames, None] / (track.sensor[0] * np.maximum(depth, 0.3))
     border = np.stack([np.maximum(half, _EDGE), np.full_like(half, _EDGE)], axis=-1)
     seen = (depth > 0.3) & ((xy > border) & (xy < 1.0 - border)).all(axis=-1)
-    seen &= clear_lines(solids, camera, goal, hidden, ignore)
-    seen &= clear_of_people(camera, goal, [(foot[late], crown[late], r) for foot, crown, r in people])
-    aperture = np.broadcast_to(np.asarray(track.aperture, float), racks.shape)
-    dull = ~_told(track, foci, np.maximum(aperture, 1e-3))
-    held = (seen[..., 0].mean(axis=1) >= _SEEN) & seen[:, -1, 0]
-    return np.asarray(racks & (dull | ~held))
+    people = [(foot[frames], crown[frames], radius) for foot, crown, radius in one.others]
+    seen &= clear_of_people(camera, points, people)  # whose shoulder may be before a breast
+    outline = _OUTLINE if one.person else _OUTLINE[:1]
+    across = outline[:, :1] * axes[..., None, 0, :] + outline[:, 1:] * np.array((0.0, 0.0, 1.0))
+    clear = clear_lines(solids, camera, points[None] + across, hidden, one.own)
+    return np.asarray(seen[..., 0] & clear.all(axis=-1))

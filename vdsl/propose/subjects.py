@@ -16,7 +16,7 @@ from ..cinema import rig_cinema, rig_paper
 from ..cinema.subject import Subject, group, person, place, thing
 from ..lang.ir import Shot, Target
 from ..library import Catalog
-from .focusing import Foci
+from .focusing import Foci, Held
 from .types import STILL, StoryProposal
 
 Array = NDArray[np.float64]
@@ -154,6 +154,29 @@ def foci_of(shot: Shot, subject: Subject, story: StoryProposal, filming: Filming
     if shot.focus is not None and shot.focus.kind == "spot" and subject.kind != "place":
         return Foci((_point(shot.focus, story, filming),), end)
     return Foci((subject.landmarks["eyes"],), end)
+
+
+def held_by(
+    shot: Shot, subject: Subject, story: StoryProposal, filming: Filming, foci: Foci
+) -> tuple[Held | None, Held | None]:
+    """What a rack-focus rests on at first and in the end; None for a place, which is all around."""
+    named = shot.focus.path[-1] if shot.focus is not None else ""
+    heads = (named, *subject.heads) if named in subject.heads else tuple(subject.heads)
+    first = heads[0] if heads else subject.name if subject.kind == "person" else ""
+    start = None if subject.kind == "place" else _held(first, shot.focus, foci.start[0], shot, story, filming)
+    if foci.end is None:
+        return start, None
+    goal = shot.focus_to.path[-1] if shot.focus_to is not None else ""
+    return start, _held(goal, shot.focus_to, foci.end, shot, story, filming)
+
+
+def _held(
+    name: str, target: Target | None, points: Array, shot: Shot, story: StoryProposal, filming: Filming
+) -> Held:
+    person = name in story.performances
+    item = find_object(filming.world, target) if target is not None and not person else None
+    others = pillars_of(shot, story, {name} if person else set())
+    return Held(points, person, others, item.id if item is not None else None)
 
 
 def _point(target: Target, story: StoryProposal, filming: Filming) -> Array:

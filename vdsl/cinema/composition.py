@@ -20,6 +20,7 @@ from .vectors import length
 _HAIR, _CHEEK = 0.1, 0.02  # metres of a head to its side that hide, and of a face that is not to be hidden
 _HEAD = 0.11  # half a head's width and its hair, metres
 _NEARLY = 0.9  # share of a head in the frame that is as good as all of it
+_BROAD = 0.27  # half of somebody's breadth with the arms and a little air, metres
 
 
 def framing(
@@ -53,7 +54,7 @@ def framing(
         "headroom": np.clip(mean_of(crown, window), -1.0, 2.0),
         "headroom_error": np.minimum(mean_of(np.abs(crown - top[:, None]), window), 2.0),
         "head_cut": _beyond(-crown, window),
-        "head_cropped": _cropped(takes, picture),
+        "head_cropped": np.maximum(_cropped(takes, picture), _halved(takes, subject, picture)),
         "feet_cut": np.where(whole, _beyond(sole - 1.0, window), 0.0),
         "thirds_error": np.minimum(mean_of(np.abs(eyes[..., 1] - 1 / 3), window), 2.0),
         "lead_room": _lead(takes, subject, at, eyes[..., 0]),
@@ -98,6 +99,21 @@ def _cropped(takes: Takes, picture: Picture) -> Array:
     inside = np.where(picture.depth[:, (0, -1)].min(axis=-1) > 0.05, np.minimum(inside / _NEARLY, 1.0), 0.0)
     whole = np.array([s.upper == "crown" for s in takes.sizes])
     return np.where(whole, (4.0 * inside * (1.0 - inside)).max(axis=1), 0.0)
+
+
+def _halved(takes: Takes, subject: Subject, picture: Picture) -> Array:
+    """0 where all of somebody's breadth is in the frame or none, at the take's first frame and its last, 1
+    where one of the frame's sides halves it; 0 for sizes that cut the head. [P]"""
+    if subject.kind != "person":
+        return np.zeros(len(picture.xy))
+    x, y = np.moveaxis(picture.of("pocket")[:, (0, -1)], -1, 0)
+    depth = picture.depth[:, (0, -1), picture.names.index("pocket")]
+    focal = takes.track.focal[:, (0, -1)]
+    half = _BROAD * focal / (takes.track.sensor[0] * np.maximum(depth, 0.05))
+    inside = np.minimum(x + half, 1.0) - np.maximum(x - half, 0.0)
+    share = np.where((depth > 0.05) & (y > 0.0) & (y < 1.0), np.clip(inside / (2 * half), 0.0, 1.0), 0.0)
+    whole = np.array([s.upper == "crown" for s in takes.sizes])
+    return np.where(whole, (4.0 * share * (1.0 - share)).max(axis=1), 0.0)
 
 
 def everybody_seen(

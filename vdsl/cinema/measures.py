@@ -36,7 +36,7 @@ MEASURES = (
     "headroom",  # height of the frame above the crown, share of the frame, mean over the window
     "headroom_error",  # the same, off the size's own headroom
     "head_cut",  # how far what the size puts at the top is above the frame, share of its height, the greatest
-    "head_cropped",  # how much a border of the frame runs through the head at the first frame or the last
+    "head_cropped",  # how much a border of the frame cuts the head, or a side the body, first or last
     "feet_cut",  # the same below the frame, for sizes that are to show the whole; 0 for the others
     "view",  # share of the window in which everybody a two-shot is of, or the shoulder it is over, is seen so
     "lead_room",  # more room ahead of the face than behind: −1..1, 0 where it looks at the camera

@@ -23,12 +23,15 @@ ONE_LAMP = 0.9  # metres; glowing faces of one object within such a cube are one
 MOST_LAMPS = 64
 BULB = 0.03  # square metres of glow that are as bright as a lamp in a room
 HEIGHTS = (0.8, 4.5)  # metres: what a lamp is made to light is at least, at most so far below it
-BLAZE = 1.5  # a fire that is this much smaller than a height is as bright as a lamp there
+BLAZE = 2.4  # a fire that is this much smaller than a height is as bright as a lamp there
+AGLOW = 3.0  # panes, screens and signals are made to light no more than what is so far, for their size
 LEVEL = 0.62  # light that a bulb throws on what it is made to light, before it is turned up or down
 HOOD = 0.75  # share of its light that a lamp under a hood sends down rather than all around
 HOODED = (0.45, 0.02)  # metres around a lamp, and square metres of its own thing above it that are a hood
 FLAT = 0.66  # share of a body's surface that faces one way, from which on it is a pane or a screen
 THIN = 0.15  # how thick a lamp is for its width at most, to be one as well
+PANEL = 0.4  # square metres from which on a flat lamp in a ceiling is a panel
+OVERHEAD = 0.4  # how much of a bulb's light one throws for each metre across: there are several in a room
 PANE = 0.6  # how much of a bulb's light a square metre of these throws, both sides together
 REACH = 4.0  # how often as far as that it reaches at all
 CELL = 0.12  # metres, finest cell of the volume
@@ -82,16 +85,20 @@ def find_lamps(
     flat = (sides.max(axis=1) > FLAT * whole) & (sides.argmax(axis=1) < 2)  # upright ones
     wide = np.sqrt(gathered(area[:, None] * (middle - place[of]) ** 2) / whole[:, None])[:, :2]
     flat |= wide.min(axis=1) < THIN * wide.max(axis=1)  # a trace on a screen, letters of neon
+    panel = (sides[:, 2] > FLAT * whole) & (whole > PANEL)
     first = np.unique(of, return_index=True)[1]
     floors = np.array(sorted(levels)) if levels else np.zeros(1)
     under = floors[np.clip(np.searchsorted(floors, place[:, 2], side="right") - 1, 0, None)]
-    height = np.clip(np.maximum(place[:, 2] - under, BLAZE * np.sqrt(whole)), *HEIGHTS)
+    height, across = place[:, 2] - under, np.sqrt(whole)
+    height = np.where(flat, np.minimum(height, AGLOW * across), np.maximum(height, BLAZE * across))
+    height = np.clip(height, *HEIGHTS)
     power = strength * LEVEL * np.clip(np.sqrt(whole / BULB), 0.1, 1.35) * height**2
     _, thing, many = np.unique(owners[first], return_inverse=True, return_counts=True)
     hooded = ~flat & _hooded(mesh, object_ids, place, owners[first])
     facing[hooded] = (0.0, 0.0, -HOOD)
-    pane = PANE * np.clip(np.sqrt(whole), 0.35, 1.0)  # a screen throws less than a lit window
-    power *= np.where(flat, pane, 1.0) / np.sqrt(many[thing.reshape(-1)])  # many windows: one light
+    pane = PANE * np.clip(across, 0.2, 1.0)  # a screen throws less than a lit window
+    pane = np.where(flat, pane, np.where(panel, OVERHEAD * across, 1.0))
+    power *= pane / np.sqrt(many[thing.reshape(-1)])  # many windows: one light
     color = color**1.3  # as the eye takes them beside daylight: warmer, stronger
     color /= np.maximum(color.max(axis=1, keepdims=True), 1e-6)
     if style.clay:

@@ -103,3 +103,25 @@ def test_only_the_brightest_of_very_many_lamps_are_kept() -> None:
     lamps = find_lamps(join(lights), ids, (0.0,), 1.0, STYLES["board"])
     assert len(lamps.place) == MOST_LAMPS
     assert lamps.place[:, 0].min() > 80 - MOST_LAMPS - 1
+
+
+def of_lamp(lamp: object) -> float:
+    """How much the lamp of a scene throws one metre away."""
+    content = lit(1.0, lamp=lamp)
+    found = find_lamps(content.static, content.static_object, (0.0,), 1.0, STYLES["board"])
+    assert len(found.place) == 1
+    return float(found.color.sum())
+
+
+def test_a_signal_high_up_is_no_street_lamp() -> None:
+    """A disc that faces the road is seen from afar, but does not light the ground under it."""
+    signal = box((-0.1, -0.02, 3.0), (0.1, 0.02, 3.2), WARM, "glow")
+    bulb = box((-0.08, -0.08, 3.0), (0.08, 0.08, 3.16), WARM, "glow")
+    assert of_lamp(signal) < 0.05 * of_lamp(bulb)
+
+
+def test_a_ceiling_panel_leaves_light_for_others() -> None:
+    """Each throws a part of what a single bulb at its height does, so that a row of them does not dazzle."""
+    panel = box((-0.3, -0.3, 2.7), (0.3, 0.3, 2.72), WARM, "glow")
+    bulb = box((-0.1, -0.1, 2.7), (0.1, 0.1, 2.9), WARM, "glow")
+    assert 0.2 * of_lamp(bulb) < of_lamp(panel) < 0.5 * of_lamp(bulb)

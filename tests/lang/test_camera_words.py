@@ -115,3 +115,14 @@ def test_others_are_answered_with_what_is_meant(words: str) -> None:
     (error,) = read(words).errors
     assert ANSWERED[words] in (error.suggestion, error.fix)
     assert error.help
+
+
+@pytest.mark.parametrize(
+    ("behind", "shown"),
+    [("ots anna", "`/ (ots anna static medium)`"), ("close-up", "`/ (static close-up eye-level)`")],
+)
+def test_camera_words_after_the_parenthesis_are_shown_where_they_belong(behind: str, shown: str) -> None:
+    with pytest.raises(ScriptError) as told:
+        check_source(Source("words.vds", f"{STORY.format('static medium').rstrip()} {behind}\n"), Report())
+    (found,) = told.value.report.diagnostics
+    assert (found.code, shown in str(found.help)) == ("VDS050", True)

@@ -141,6 +141,14 @@ def _is_word(value: ast.Value, word: str) -> bool:
     return isinstance(value, ast.Name) and words.fold(value.text) == word
 
 
+def _in_parentheses(option: ast.Option) -> str:
+    """A camera that has the word an option has been taken for; a view with whose it is."""
+    if words.CAMERA_WORDS[words.fold(option.name.text)].slot != "view":
+        return "/ (static close-up eye-level)"
+    names = [value.text for value in option.values if isinstance(value, ast.Name)]
+    return f"/ ({' '.join([option.name.text, *names[:1]])} static medium)"
+
+
 def _unknown(option: ast.Option, report: Report) -> None:
     name = option.name.text
     folded = words.fold(name)
@@ -149,7 +157,7 @@ def _unknown(option: ast.Option, report: Report) -> None:
             "VDS050",
             option.name.span,
             label=f"`{name}` is a word of the camera, not an option",
-            help="camera words stand in parentheses after the slash: `/ (static close-up eye-level)`",
+            help=f"camera words stand in parentheses after the slash: `{_in_parentheses(option)}`",
         )
         return
     known = (*_READERS, "focus", "feeling")

@@ -45,6 +45,7 @@ class Passes:
     def __init__(self, backend: Backend, buffer: Buffers, style: Style) -> None:
         from .kernels import (
             borders,
+            grain,
             hatch,
             ink,
             paint,
@@ -56,7 +57,8 @@ class Passes:
         )  # only now: they import taichi
 
         self._backend, self._buffer, self._style = backend, buffer, style
-        self._hatch, self._pattern, self._smooth = hatch, pattern, smooth
+        self._hatch, self._grain, self._smooth = hatch, grain, smooth
+        self._grain_runs = vectorised(grain.grain_runs) if backend.on_host else None
         self._smooth_runs = vectorised(smooth.smooth_runs)
         self._sunlight = sunlight
         self._rows, self._upload = rows, backend.upload
@@ -111,9 +113,19 @@ class Passes:
             strokes = (layer.vis, layer.level, layer.picture)
             self._hatch.hatch_rows(view, moment, *places, *counts, *paper, *strokes, *extent)
         elif not self._style.clay:
-            kept = (layer.vis, layer.solid, layer.level, layer.picture)
-            sheet = (loaded.sheet, scene.static_faces, self._lattice)
-            self._pattern.grain_rows(view, *sheet, *kept, *extent)
+            self._lay_grain(loaded, layer, view, extent)
+
+    def _lay_grain(self, loaded: Loaded, layer: Layer, view: Any, extent: tuple[int, int, int]) -> None:
+        """Patterns of materials, over the shaded picture."""
+        sheet = (loaded.sheet, loaded.scene.static_faces, self._lattice)
+        runs, run, workers = (layer.solid, layer.level), self.run, TURNS * self._backend.threads
+        if self._grain_runs is None or extent[1] % run:
+            self._grain.grain_rows(view, *sheet, layer.vis, *runs, layer.picture, *extent)
+            return
+        scratch = self._buffer("graining", (workers * self._grain.SCRATCH * run,), np.float32)
+        seen, picture = (x[: len(x) // run * run].reshape(-1, run) for x in (layer.vis, layer.picture))
+        wide, word = (scratch.view(kind).reshape(-1, run) for kind in (np.float32, np.uint32))
+        self._grain_runs(view, *sheet, layer.vis, seen, *runs, picture, scratch, wide, word, *extent, workers)
 
     def _shade_rows(
         self,

@@ -5,8 +5,8 @@ pixel on the surface and fade out before they could shimmer. Indices are those o
 :data:`runtime.mesh.MATERIALS`; 10 and 11 vary so slowly that the shading looks them up every few
 pixels (:func:`broad_pattern`), 7 and 8 are no surfaces to light at all.
 
-The others go over the shaded picture (:func:`grain_rows`), in its sRGB bytes: a pattern is so faint
-that the film's curve is straight along it.
+The others go over the shaded picture (:mod:`.grain`), in its sRGB bytes: a pattern is so faint that the
+film's curve is straight along it.
 """
 
 # mypy: ignore-errors
@@ -16,12 +16,10 @@ import numpy as np
 import taichi as ti
 from numpy.typing import NDArray
 
-from .geometry import bounded, f1, f2, greater, i1, lesser, part3, triangle, u32s, u64s, vec3
-from .paint import RUN, SHADE, SHEET, scaled
+from .geometry import bounded, greater, lesser, vec3
 
 SIDE = 128  # of the lattice of the noise
 GRAINED = (1, 2, 3, 4, 5, 6, 9, 12, 13, 14, 15, 16, 17, 18, 19, 20, 21, 22)  # drawn pixel by pixel
-SLOPE = 0.45  # by how much an sRGB value changes with the light, both as shares
 
 
 def noise_lattice() -> NDArray[np.float32]:
@@ -55,9 +53,31 @@ def value_noise(x, y, lattice: ti.template()):
 
 
 @ti.func
+def noise_at(x, y, lattice: ti.template()):
+    return value_noise(x, y, lattice)
+
+
+@ti.func
+def hashed_at(a, b, lattice: ti.template()):
+    return hashed(ti.cast(a, ti.i32), ti.cast(b, ti.i32))
+
+
+class Alone:
+    """Patterns at one place at a time. ``hashed`` takes whole numbers as float32."""
+
+    noise = staticmethod(noise_at)
+    hashed = staticmethod(hashed_at)
+
+
+@ti.func
+def positive(x):
+    return greater(x, 0.0 - x)
+
+
+@ti.func
 def joint(x, width, blur):
     """Coverage 0..1 of a joint ``width`` wide centred on whole numbers (all in periods of x)."""
-    d = ti.abs(x - ti.floor(x + 0.5))
+    d = positive(x - ti.floor(x + 0.5))
     sharp = 1.0 / greater(blur, 1e-4)
     cover = bounded((0.5 * width - d) * sharp + 0.5, 0.0, 1.0)
     # thinner than a pixel: paler instead of broken; and gone before the period is a few pixels
@@ -74,47 +94,50 @@ def fade(blur, period):
 def contour(h, level, width, blur):
     """Coverage 0..1 of the line on which a noise ``h`` has a ``level``; width, blur: in units of h."""
     soft = greater(blur, 0.3 * width)
-    cover = bounded((0.5 * width - ti.abs(h - level)) / soft + 0.5, 0.0, 1.0)
+    cover = bounded((0.5 * width - positive(h - level)) / soft + 0.5, 0.0, 1.0)
     return cover * lesser(1.0, width / soft)
 
 
 @ti.func
-def bonded(u, v, length, height, gap, blur, varied, dark):
+def bonded(u, v, length, height, gap, blur, varied, dark, kind: ti.template(), source: ti.template()):
     """Courses of blocks ``length`` by ``height`` metres, each course shifted: tones, and darker joints."""
     row = v / height
     line = ti.floor(row)
-    along = u / length + hashed(ti.cast(line, ti.i32), 11)
-    tone = hashed(ti.cast(line, ti.i32), ti.cast(ti.floor(along), ti.i32))
+    along = u / length + kind.hashed(line, 11.0, *source)
+    tone = kind.hashed(line, ti.floor(along), *source)
     seam = greater(joint(row, gap / height, blur / height), joint(along, gap / length, blur / length))
     return (1.0 + (tone - 0.5) * varied * fade(blur, height)) * (1.0 - dark * seam)
 
 
 @ti.func
-def pattern(material: ti.template(), p, n, blur, lattice: ti.template()):
-    """Factor of one of GRAINED at world point ``p``, face normal ``n``; blur: a pixel's width, metres."""
-    out = 1.0
+def pattern(material: ti.template(), px, py, pz, n, blur, kind: ti.template(), source: ti.template()):
+    """Factor of one of GRAINED at world places, of a face with normal ``n``; blur: a pixel's width, metres.
+
+    kind: how noise is looked up, at one place (:class:`Alone`) or at sixteen; source: what from
+    """
+    u, v = px, py
     upright = ti.abs(n.z) < 0.7
-    u, v = p.x, p.y
     if upright:
-        v = p.z
+        v = pz
         if ti.abs(n.x) > ti.abs(n.y):
-            u = p.y
+            u = py
+    out = u * 0.0 + 1.0
     if ti.static(material >= 12):
-        out = ground_pattern(material, p, u, v, upright, blur, lattice)
+        out = ground_pattern(material, px, py, pz, u, v, upright, blur, kind, source)
     elif ti.static(material == 1):  # wood
         if upright:
             strong = 0.10 * fade(blur, 0.03)
             if strong > 0:
-                out = 1.0 + (value_noise(u * 34.0, v * 2.2, lattice) - 0.5) * strong
+                out = 1.0 + (kind.noise(u * 34.0, v * 2.2, *source) - 0.5) * strong
         else:
             row = v * (1.0 / 0.13)
             line = ti.floor(row)
-            along = u * (1.0 / 1.3) + hashed(ti.cast(line, ti.i32), 7)
-            tone = hashed(ti.cast(line, ti.i32), ti.cast(ti.floor(along), ti.i32))
+            along = u * (1.0 / 1.3) + kind.hashed(line, 7.0, *source)
+            tone = kind.hashed(line, ti.floor(along), *source)
             out = 1.0 + (tone - 0.5) * 0.13 * fade(blur, 0.13)
             strong = 0.07 * fade(blur, 0.022)
             if strong > 0:
-                out += (value_noise(u * 2.4 + 13.0 * line, v * 46.0, lattice) - 0.5) * strong
+                out += (kind.noise(u * 2.4 + 13.0 * line, v * 46.0, *source) - 0.5) * strong
             gap = greater(
                 joint(row, 0.004 / 0.13, blur * (1.0 / 0.13)), joint(along, 0.004 / 1.3, blur * (1.0 / 1.3))
             )
@@ -123,7 +146,7 @@ def pattern(material: ti.template(), p, n, blur, lattice: ti.template()):
         size = 0.15 if upright else 0.3
         inverse = 1.0 / 0.15 if upright else 1.0 / 0.3
         x, y = u * inverse, v * inverse
-        tone = hashed(ti.cast(ti.floor(x), ti.i32), ti.cast(ti.floor(y), ti.i32))
+        tone = kind.hashed(ti.floor(x), ti.floor(y), *source)
         out = 1.0 + (tone - 0.5) * 0.05 * fade(blur, size)
         line = 0.005 * inverse
         gap = greater(joint(x, line, blur * inverse), joint(y, line, blur * inverse))
@@ -132,21 +155,21 @@ def pattern(material: ti.template(), p, n, blur, lattice: ti.template()):
         y = v / 0.075
         line = ti.floor(y)
         x = u / 0.24 + 0.5 * (line - 2.0 * ti.floor(line * 0.5))
-        tone = hashed(ti.cast(ti.floor(x), ti.i32), ti.cast(line, ti.i32))
+        tone = kind.hashed(ti.floor(x), line, *source)
         out = 1.0 + (tone - 0.5) * 0.2 * fade(blur, 0.12)
         gap = greater(joint(x, 0.012 / 0.24, blur / 0.24), joint(y, 0.012 / 0.075, blur / 0.075))
         out *= 1.0 + 0.28 * gap
     elif ti.static(material == 4):  # grass
-        broad = value_noise(p.x * 1.1, p.y * 1.1, lattice)
-        tuft = value_noise(p.x * 11.0, p.y * 11.0 + p.z * 7.0, lattice)
+        broad = kind.noise(px * 1.1, py * 1.1, *source)
+        tuft = kind.noise(px * 11.0, py * 11.0 + pz * 7.0, *source)
         patch = bounded((broad - 0.42) * 6.0, 0.0, 1.0)
         blade = bounded((tuft - 0.62) * 7.0, 0.0, 1.0)
         out = 0.95 + 0.09 * patch - 0.13 * blade * fade(blur, 0.12)
     elif ti.static(material == 5):  # asphalt
-        out = 1.0 + (value_noise(u * 0.7, v * 0.7, lattice) - 0.5) * 0.08
+        out = 1.0 + (kind.noise(u * 0.7, v * 0.7, *source) - 0.5) * 0.08
         strong = 0.16 * fade(blur, 0.02)
         if strong > 0:
-            out += (value_noise(u * 55.0, v * 55.0, lattice) - 0.5) * strong
+            out += (kind.noise(u * 55.0, v * 55.0, *source) - 0.5) * strong
     elif ti.static(material == 6):  # cloth
         strong = 0.05 * fade(blur, 0.006)
         if strong > 0:
@@ -154,75 +177,76 @@ def pattern(material: ti.template(), p, n, blur, lattice: ti.template()):
     elif ti.static(material == 9):  # carpet
         strong = 0.16 * fade(blur, 0.014)
         if strong > 0:
-            out = 1.0 + (value_noise(u * 80.0, v * 80.0, lattice) - 0.5) * strong
-        out *= 1.0 + (value_noise(u * 3.0, v * 3.0, lattice) - 0.5) * 0.05
+            out = 1.0 + (kind.noise(u * 80.0, v * 80.0, *source) - 0.5) * strong
+        out *= 1.0 + (kind.noise(u * 3.0, v * 3.0, *source) - 0.5) * 0.05
     return out
 
 
 @ti.func
-def ground_pattern(material: ti.template(), p, u, v, upright, blur, lattice: ti.template()):
-    """The materials of landscapes, old walls and machines, on the plane (u, v) through ``p``."""
-    out = 1.0
+def ground_pattern(
+    material: ti.template(), px, py, pz, u, v, upright, blur, kind: ti.template(), source: ti.template()
+):
+    """The materials of landscapes, old walls and machines, on the plane (u, v) through the places."""
+    out = u * 0.0 + 1.0
     if ti.static(material == 12):  # water: broken strokes of light on slow swells
-        swell = value_noise(p.x * 0.32 + 5.0, p.y * 0.75, lattice)
+        swell = kind.noise(px * 0.32 + 5.0, py * 0.75, *source)
         wave = (
-            value_noise(p.x * 0.85, p.y * 2.3, lattice) * 0.7
-            + value_noise(p.x * 2.3 + 9.0, p.y * 5.0, lattice) * 0.3
+            kind.noise(px * 0.85, py * 2.3, *source) * 0.7
+            + kind.noise(px * 2.3 + 9.0, py * 5.0, *source) * 0.3
         )
         light = contour(wave, 0.56, 0.075, blur * 2.6) + 0.6 * contour(wave, 0.34, 0.05, blur * 2.6)
-        some = bounded((value_noise(p.x * 0.55 + 3.0, p.y * 1.3, lattice) - 0.3) * 3.0, 0.0, 1.0)
+        some = bounded((kind.noise(px * 0.55 + 3.0, py * 1.3, *source) - 0.3) * 3.0, 0.0, 1.0)
         out = 0.97 + (swell - 0.5) * 0.16 + 0.3 * light * some * fade(blur, 0.35)
     elif ti.static(material == 13):  # sand: ripples the wind made, and grains
-        drift = value_noise(u * 0.45, v * 0.45, lattice)
-        bent = v * 2.6 + 1.6 * value_noise(u * 0.8, v * 0.5, lattice) + 0.35 * u
-        crest = ti.abs(bent - ti.floor(bent) - 0.5) * 2.0
+        drift = kind.noise(u * 0.45, v * 0.45, *source)
+        bent = v * 2.6 + 1.6 * kind.noise(u * 0.8, v * 0.5, *source) + 0.35 * u
+        crest = positive(bent - ti.floor(bent) - 0.5) * 2.0
         out = 1.0 + (drift - 0.5) * 0.09 + (crest - 0.5) * 0.12 * fade(blur, 0.38)
         strong = 0.12 * fade(blur, 0.02)
         if strong > 0:
-            out += (value_noise(u * 60.0, v * 60.0, lattice) - 0.5) * strong
+            out += (kind.noise(u * 60.0, v * 60.0, *source) - 0.5) * strong
     elif ti.static(material == 14):  # stone: hewn blocks in a wall, flags on a floor
         if upright:
-            out = bonded(u, v, 0.62, 0.31, 0.016, blur, 0.18, 0.28)
+            out = bonded(u, v, 0.62, 0.31, 0.016, blur, 0.18, 0.28, kind, source)
         else:
-            out = bonded(u, v, 0.8, 0.55, 0.014, blur, 0.16, 0.28)
+            out = bonded(u, v, 0.8, 0.55, 0.014, blur, 0.16, 0.28, kind, source)
         strong = 0.07 * fade(blur, 0.1)
         if strong > 0:
-            out += (value_noise(u * 12.0, v * 12.0, lattice) - 0.5) * strong
+            out += (kind.noise(u * 12.0, v * 12.0, *source) - 0.5) * strong
     elif ti.static(material == 15):  # metal: broad slanting sheens, brushed along u
-        sheen = (p.x + p.y) * 0.55 + p.z * 0.8
-        sheen = ti.abs(sheen - ti.floor(sheen) - 0.5) * 2.0
+        sheen = (px + py) * 0.55 + pz * 0.8
+        sheen = positive(sheen - ti.floor(sheen) - 0.5) * 2.0
         sheen = sheen * sheen * (3 - 2 * sheen)
         out = 0.99 + (sheen - 0.46) * 0.13
         strong = 0.07 * fade(blur, 0.02)
         if strong > 0:
-            out += (value_noise(u * 3.0, v * 70.0, lattice) - 0.5) * strong
+            out += (kind.noise(u * 3.0, v * 70.0, *source) - 0.5) * strong
     elif ti.static(material == 16):  # leaves: light and dark clumps, the same whichever way a face looks
-        x, y = p.x + 0.45 * p.z, p.y - 0.6 * p.z
+        x, y = px + 0.45 * pz, py - 0.6 * pz
         clump = (
-            value_noise(x * 4.2, y * 4.2, lattice) * 0.6
-            + value_noise(x * 10.0 + 3.0, y * 10.0, lattice) * 0.4
+            kind.noise(x * 4.2, y * 4.2, *source) * 0.6 + kind.noise(x * 10.0 + 3.0, y * 10.0, *source) * 0.4
         )
         bright = bounded((clump - 0.55) * 9.0, 0.0, 1.0)
         dark = bounded((0.44 - clump) * 9.0, 0.0, 1.0)
         out = 1.0 + (0.12 * bright - 0.13 * dark) * fade(blur, 0.2)
     elif ti.static(material == 17):  # snow: soft drifts
-        out = 1.0 + (value_noise(u * 0.6, v * 0.6, lattice) - 0.5) * 0.07
-        out += (value_noise(u * 2.7, v * 2.7, lattice) - 0.5) * 0.045 * fade(blur, 0.3)
+        out = 1.0 + (kind.noise(u * 0.6, v * 0.6, *source) - 0.5) * 0.07
+        out += (kind.noise(u * 2.7, v * 2.7, *source) - 0.5) * 0.045 * fade(blur, 0.3)
     elif ti.static(material == 18):  # earth: trodden patches and pebbles
-        broad = value_noise(u * 0.9, v * 0.9, lattice)
+        broad = kind.noise(u * 0.9, v * 0.9, *source)
         x, y = u * 6.4 + v * 4.8, v * 6.4 - u * 4.8
-        stones = value_noise(x, y, lattice) * 0.6 + value_noise(u * 9.0, v * 9.0, lattice) * 0.4
+        stones = kind.noise(x, y, *source) * 0.6 + kind.noise(u * 9.0, v * 9.0, *source) * 0.4
         pebble = bounded((stones - 0.6) * 9.0, 0.0, 1.0)
         out = 1.0 + (broad - 0.5) * 0.16 + (0.025 - 0.13 * pebble) * fade(blur, 0.12)
         strong = 0.1 * fade(blur, 0.03)
         if strong > 0:
-            out += (value_noise(u * 34.0, v * 34.0, lattice) - 0.5) * strong
+            out += (kind.noise(u * 34.0, v * 34.0, *source) - 0.5) * strong
     elif ti.static(material == 19):  # marble: veins that run aslant over large slabs
         x, y = u * 0.83 + v * 0.56, v * 0.83 - u * 0.56
-        warp = value_noise(x * 1.1, y * 1.1, lattice)
+        warp = kind.noise(x * 1.1, y * 1.1, *source)
         vein = (
-            value_noise(x * 0.5 + 0.5 * warp, y * 2.6 + 1.2 * warp, lattice) * 0.8
-            + value_noise(x * 4.0, y * 5.0, lattice) * 0.2
+            kind.noise(x * 0.5 + 0.5 * warp, y * 2.6 + 1.2 * warp, *source) * 0.8
+            + kind.noise(x * 4.0, y * 5.0, *source) * 0.2
         )
         strong = contour(vein, 0.5, 0.04, blur * 2.2) + 0.6 * contour(vein, 0.7, 0.04, blur * 2.2)
         out = 1.02 + (warp - 0.5) * 0.11 - 0.2 * strong * fade(blur, 0.3)
@@ -231,20 +255,19 @@ def ground_pattern(material: ti.template(), p, u, v, upright, blur, lattice: ti.
     elif ti.static(material == 20):  # cobble: small rounded stones in courses
         row = v / 0.16
         line = ti.floor(row)
-        along = u / 0.19 + hashed(ti.cast(line, ti.i32), 3)
-        tone = hashed(ti.cast(line, ti.i32), ti.cast(ti.floor(along), ti.i32))
+        along = u / 0.19 + kind.hashed(line, 3.0, *source)
+        tone = kind.hashed(line, ti.floor(along), *source)
         x, y = along - ti.floor(along) - 0.5, row - line - 0.5
-        edge = greater(ti.abs(x), ti.abs(y)) + 0.35 * (x * x + y * y)
+        edge = greater(positive(x), positive(y)) + 0.35 * (x * x + y * y)
         soft = greater(blur / 0.16, 0.08)
         seam = bounded((edge - 0.5) / soft + 0.5, 0.0, 1.0)
         out = 1.05 + ((tone - 0.5) * 0.17 - 0.26 * seam) * fade(blur, 0.17)
     elif ti.static(material == 21):  # parquet: squares of four strips, every other one across
         side = 1.0 / 0.36
         i, j = ti.floor(u * side), ti.floor(v * side)
-        turned = ti.cast(i + j, ti.i32) & 1
-        strip = (u if turned == 1 else v) * side * 4.0
-        cell = ti.cast(i * 57.0 + j * 131.0, ti.i32)
-        tone = hashed(ti.cast(ti.floor(strip), ti.i32), cell)
+        turned = i + j - 2.0 * ti.floor((i + j) * 0.5)
+        strip = ti.select(turned > 0.5, u, v) * side * 4.0
+        tone = kind.hashed(ti.floor(strip), i * 57.0 + j * 131.0, *source)
         seam = greater(
             joint(strip, 0.045, blur * side * 4.0),
             greater(joint(u * side, 0.012, blur * side), joint(v * side, 0.012, blur * side)),
@@ -252,11 +275,11 @@ def ground_pattern(material: ti.template(), p, u, v, upright, blur, lattice: ti.
         out = (1.015 + (tone - 0.5) * 0.13 * fade(blur, 0.12) + (turned - 0.5) * 0.05) * (1.0 - 0.22 * seam)
     else:  # plate: sheets of metal with seams between them
         x, y = u * (1.0 / 1.2), v * (1.0 / 0.8)
-        tone = hashed(ti.cast(ti.floor(x), ti.i32), ti.cast(ti.floor(y), ti.i32))
+        tone = kind.hashed(ti.floor(x), ti.floor(y), *source)
         seam = greater(joint(x, 0.016 / 1.2, blur / 1.2), joint(y, 0.016 / 0.8, blur / 0.8))
         out = (1.0 + (tone - 0.5) * 0.07 * fade(blur, 0.8)) * (1.0 - 0.26 * seam)
-        sheen = (p.x - p.y) * 0.4 + p.z * 0.6
-        out += (ti.abs(sheen - ti.floor(sheen) - 0.5) - 0.25) * 0.16
+        sheen = (px - py) * 0.4 + pz * 0.6
+        out += (positive(sheen - ti.floor(sheen) - 0.5) - 0.25) * 0.16
     return out
 
 
@@ -284,63 +307,3 @@ def glazed(base, ray, p):
     t = band - ti.floor(band)
     streak = 0.10 if (t < 0.16 or 0.24 < t < 0.30) else 0.0
     return base * 1.5 + vec3(0.10, 0.12, 0.13) + 2.0 * streak
-
-
-@ti.kernel
-def grain_rows(
-    view: f2,
-    sheet: f1,
-    static_faces: ti.i32,
-    lattice: f1,
-    vis: u64s,
-    solid: i1,
-    level: i1,
-    picture: u32s,
-    views: ti.i32,
-    width: ti.i32,
-    height: ti.i32,
-):
-    """Put the patterns of the set on a shaded picture, in place."""
-    for line in range(views * height):
-        n = line // height
-        eye = part3(view, n, 0)
-        step = part3(view, n, 3) / view[n, 12]
-        first = (
-            part3(view, n, 9)
-            + part3(view, n, 6) * ((view[n, 15] - (line % height + 0.5)) / view[n, 13])
-            + step * (0.5 - view[n, 14])
-        )
-        runs = (width + RUN - 1) // RUN
-        for run in range(runs):
-            whole = solid[line * runs + run]
-            if whole >= 0 and level[line * runs + run] >= SHADE:
-                limit = ti.min(run * RUN + RUN, width)
-                x = run * RUN
-                while x < limit:
-                    at = line * width + x
-                    t = whole - 1 if whole > 0 else triangle(vis, at)
-                    stop = limit if whole > 0 else x + 1
-                    while stop < limit and triangle(vis, at + stop - x) == t:
-                        stop += 1
-                    if 0 <= t < static_faces:
-                        row = 2 * t * SHEET
-                        material = ti.bit_cast(sheet[row + 11], ti.i32) & 255
-                        plane = vec3(sheet[row + 12], sheet[row + 13], sheet[row + 14])
-                        # 1/z = near + x * turn on the plane of the triangle
-                        inverse = 1.0 / (sheet[row + 15] - plane.dot(eye))
-                        near, turn = plane.dot(first) * inverse, plane.dot(step) * inverse
-                        # a pixel's width on the surface at 1 m, tamed at grazing angles
-                        ray = first + step * ti.cast(x, ti.f32)
-                        cosine = ti.abs(plane.dot(ray)) / ray.norm()
-                        slant = 1.0 / (greater(ti.sqrt(cosine), 0.15) * view[n, 13])
-                        blur = slant / (near + ti.cast(x, ti.f32) * turn)
-                        for k in ti.static(GRAINED):
-                            if material == k:
-                                for j in range(x, stop):
-                                    along = ti.cast(j, ti.f32)
-                                    z = 1.0 / (near + along * turn)
-                                    p = eye + (first + step * along) * z
-                                    factor = pattern(k, p, plane, blur, lattice)
-                                    i = line * width + j
-                                    picture[i] = scaled(picture[i], 1.0 + (factor - 1.0) * SLOPE)
-                    x = stop

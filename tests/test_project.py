@@ -39,6 +39,12 @@ def test_a_new_project_is_complete_and_its_story_without_a_mistake(
     assert run(app, ["check", str(place / "night-train.vds")]).exit_code == 0
 
 
+def test_what_is_said_to_come_next_can_be_pasted(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    done = run(app, ["new", "my films/rain"])
+    assert "next: cd 'my films/rain' && vdsc serve rain.vds --watch" in done.stdout
+
+
 def test_git_ignores_builds_and_keeps_the_lock(tmp_path: Path) -> None:
     assert run(app, ["new", str(tmp_path / "rain")]).exit_code == 0
     place = tmp_path / "rain"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import shlex
 import sys
 from pathlib import Path
 from typing import Annotated
@@ -103,4 +104,6 @@ def new(
     except OSError as error:
         stop(f"cannot write {error.filename or place}: {error.strerror or error}", MACHINE)
     write_line(printable(f"{place} holds {', '.join(files)}"), sys.stdout)
-    write_line(printable(f"next: cd {place} && vdsc serve {words['file']} --watch"), sys.stdout)
+    write_line(
+        printable(f"next: cd {shlex.quote(str(place))} && vdsc serve {words['file']} --watch"), sys.stdout
+    )

@@ -76,7 +76,7 @@ _LAMPS = {
 #: How far lamps are turned down at night.
 _LOWERED = 0.86
 #: How far key and fill step back before lamps that are turned all the way up.
-_BACK, _BACK_OUTSIDE = (0.45, 0.26), (0.5, 0.32)
+_BACK, _BACK_OUTSIDE = (0.45, 0.26), (0.5, 0.28)
 #: Lamps enough to light a place by themselves, as ``shining`` counts them.
 _ENOUGH = 0.025
 _BOUNCE: Colour = (0.15, 0.10, 0.04)

@@ -72,6 +72,7 @@ class Plain:
             views,
             width,
             height,
+            *self._backend.crew(views * height),
         )
         flat = color.reshape(-1)
         if pixels % 4 == 0:

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .device import vectorised
+from .device import Backend, vectorised
 from .glazing import Box, Glazing
 from .loaded import Loaded
 from .moments import Moments
@@ -27,10 +27,11 @@ Buffers = Callable[[str, tuple[int, ...], type], Any]
 class EmptySets:
     """The empty sets of the views drawn last."""
 
-    def __init__(self, buffer: Buffers, passes: Passes, visibility: Visibility) -> None:
+    def __init__(self, backend: Backend, buffer: Buffers, passes: Passes, visibility: Visibility) -> None:
         from .kernels import reuse  # only now: it imports taichi
 
-        self._buffer, self._passes, self._visibility = buffer, passes, visibility
+        self._crew, self._buffer = backend.crew, buffer
+        self._passes, self._visibility = passes, visibility
         self._reuse, self._copy = reuse, vectorised(reuse.take_over)
         self._kept: tuple[tuple[int, int], bytes] | None = None  # what is drawn: size, cameras and walls
 
@@ -91,7 +92,8 @@ class EmptySets:
         passes.even_out(layer, self._final[: pixels * 3], sets, size)
         tiles = sets * -(-size[1] // self._reuse.BAND) * -(-size[0] // passes.run)
         self._reach = self._buffer("reach", (tiles * self._reuse.REACH,), np.float32)
-        self._reuse.reach_of(cameras, layer.vis, loaded.arrays["basis"], sets, *size, self._reach)
+        crew = self._crew(sets * -(-size[1] // self._reuse.BAND))
+        self._reuse.reach_of(cameras, layer.vis, loaded.arrays["basis"], sets, *size, self._reach, *crew)
         blocks = sets * -(-size[1] // passes.run) * -(-size[0] // passes.run)
         self._wide = self._buffer("wide_reach", (blocks * self._reuse.REACH,), np.float32)
         self._reuse.widen(self._reach, sets, *size, self._wide)
@@ -116,7 +118,7 @@ class EmptySets:
         run, views, a = self._passes.run, len(empty), loaded.arrays
         block = self._buffer("block", (views * -(-size[1] // run) * -(-size[0] // run),), np.int32)
         bounds = self._buffer("standing", (moments.count, 4), np.int32)
-        cells = (loaded.columns, loaded.rows)
+        cells, bands = (loaded.columns, loaded.rows), views * -(-size[1] // run)
         self._reuse.standing(moments.ground, *cells, moments.count, bounds)
         self._reuse.find(
             moment,
@@ -138,10 +140,12 @@ class EmptySets:
             *size,
             layer.level,
             block,
+            *self._crew(bands),
         )
         runs = size[0] // run
         copied = self._buffer("copied", (views * runs * size[1],), np.int32)
-        self._reuse.settle(block, int(whole), views, *size, layer.level, copied)
+        crew = self._crew(bands)
+        self._reuse.settle(block, int(whole), views, *size, layer.level, copied, *crew)
         colors = (self._shaded, source.edge, source.picture, layer.picture, layer.edge)
         shaded, edge, inked, picture_to, edge_to = (x[: len(x) // run * run].reshape(-1, run) for x in colors)
         self._copy(
@@ -161,4 +165,5 @@ class EmptySets:
             views,
             runs,
             size[1],
+            *self._crew(views * size[1]),
         )

@@ -113,6 +113,7 @@ class Glazing:
             *chosen[:2], a["vertices"], moments.position, a["faces"], self._group, self._color,
             sheets.static_faces, len(sheets.vertices), up(of), up(box[of]), pane, layer.vis, layer.level,
             layer.picture, layer.marks, passes.linear, passes.table, passes.run, len(of), *size,
+            *self._backend.crew(len(of) * size[1]),
         )  # fmt: skip
 
 

@@ -65,7 +65,7 @@ class Moments:
         if self._style.occlusion:
             spare = self._buffer("spare", (moments * loaded.rows * loaded.columns,), np.float32)
             floor = (a["floor"], loaded.columns, loaded.rows, spare, self.ground)
-            self._light.touch(self.position, a["area"], moments, *floor)
+            self._light.touch(self.position, a["area"], moments, *floor, *self._backend.crew(moments))
 
     def _reserve(self, loaded: Loaded, palettes: int, height: int, skinned: int) -> None:
         """Buffers, and the moment in which nobody is there."""
@@ -94,6 +94,7 @@ class Moments:
         seen = self._buffer("seen", (moments, max(skinned, 1), 3), np.float32)
         blur = self._buffer("blur", (moments * self._light.summary_size(size),), np.float32)
         fitted = (TEXEL, size, scene.detail.vertices, moments, seen, self.frame)
-        self._light.fit(self.position, a["basis"], *fitted)
+        crew = self._backend.crew
+        self._light.fit(self.position, a["basis"], *fitted, *crew(moments))
         kept = (self.frame, size, moments, self.depth, blur, self.coarse)
-        self._light.cast(seen, a["faces"], a["casters"], loaded.static_vertices, *kept)
+        self._light.cast(seen, a["faces"], a["casters"], loaded.static_vertices, *kept, *crew(moments))

@@ -19,7 +19,6 @@ from .loaded import Loaded
 from .moments import Moments
 from .types import Style
 
-TURNS = 4  # shares of the work for each thread
 Buffers = Callable[[str, tuple[int, ...], type], Any]
 
 
@@ -111,21 +110,25 @@ class Passes:
             counts = (scene.static_faces, loaded.static_vertices)
             paper = (a["tone"], loaded.paper, self._lattice)
             strokes = (layer.vis, layer.level, layer.picture)
-            self._hatch.hatch_rows(view, moment, *places, *counts, *paper, *strokes, *extent)
+            rows = self._backend.crew(views * size[1])
+            self._hatch.hatch_rows(view, moment, *places, *counts, *paper, *strokes, *extent, *rows)
         elif not self._style.clay:
             self._lay_grain(loaded, layer, view, extent)
 
     def _lay_grain(self, loaded: Loaded, layer: Layer, view: Any, extent: tuple[int, int, int]) -> None:
         """Patterns of materials, over the shaded picture."""
         sheet = (loaded.sheet, loaded.scene.static_faces, self._lattice)
-        runs, run, workers = (layer.solid, layer.level), self.run, TURNS * self._backend.threads
+        runs, run, crew = (layer.solid, layer.level), self.run, self._backend.crew(extent[0] * extent[2])
         if self._grain_runs is None or extent[1] % run:
-            self._grain.grain_rows(view, *sheet, layer.vis, *runs, layer.picture, *extent)
+            self._grain.grain_rows(view, *sheet, layer.vis, *runs, layer.picture, *extent, *crew)
             return
-        scratch = self._buffer("graining", (workers * self._grain.SCRATCH * run,), np.float32)
+        scratch = self._buffer("graining", (self._backend.threads * self._grain.SCRATCH * run,), np.float32)
         seen, picture = (x[: len(x) // run * run].reshape(-1, run) for x in (layer.vis, layer.picture))
         wide, word = (scratch.view(kind).reshape(-1, run) for kind in (np.float32, np.uint32))
-        self._grain_runs(view, *sheet, layer.vis, seen, *runs, picture, scratch, wide, word, *extent, workers)
+        memory = (scratch, wide, word)
+        self._grain_runs(
+            view, *sheet, layer.vis, seen, *runs, picture, *memory, *extent, *crew[:2], self._backend.threads
+        )
 
     def _shade_rows(
         self,
@@ -186,20 +189,21 @@ class Passes:
             layer.level,
             *rows,
             *size,
+            *self._backend.crew(len(lines)),
         )
         if loaded.sunlight is not None:
             self._lay_sunlight(loaded, moments, layer, seen, rows, size)
 
     def _match(self, layer: Layer, rows: NDArray[np.int32], left: Any, size: tuple[int, int]) -> None:
         """Colours of rows that lie between shaded ones; ``left``: what cannot be had from those."""
-        width, run = size[0], self.run
+        width, run, crew = size[0], self.run, self._backend.crew(len(rows))
         if self._match_runs is not None and width % run == 0:
             buffers = (layer.vis, layer.picture, layer.edge)
             wide = (x[: len(x) // run * run].reshape(-1, run) for x in buffers)
-            self._match_runs(rows, *wide, layer.solid, layer.level, left, width // run)
+            self._match_runs(rows, *wide, layer.solid, layer.level, left, width // run, *crew)
         else:
             kept = (layer.vis, layer.picture, layer.edge, layer.solid, layer.level)
-            self._rows.match_rows(self._upload(rows), *kept, left, width)
+            self._rows.match_rows(self._upload(rows), *kept, left, width, *crew)
 
     def _lay_sunlight(
         self,
@@ -223,6 +227,7 @@ class Passes:
             *(self.linear, self.table, layer.vis, layer.level, layer.solid, layer.picture),
             *rows,
             *size,
+            *self._backend.crew(rows[0].shape[0]),
         )
 
     def draw_lines(self, loaded: Loaded, layer: Layer, view: Any, views: int, size: tuple[int, int]) -> None:
@@ -230,9 +235,11 @@ class Passes:
         a, lookup = loaded.arrays, (self.linear, self.table)
         first, kept = loaded.scene.moving_surface, (layer.marks, layer.level)
         seen = (view, layer.picture, layer.edge, layer.vis)
+        crew = self._backend.crew
+        lines = views * size[1]
         if self._borders is None or size[0] % self.run:
             named = (a["surface_object"], a["one_color"], first)
-            self._ink.rows(*seen, layer.solid, *named, *lookup, *kept, views, *size)
+            self._ink.rows(*seen, layer.solid, *named, *lookup, *kept, views, *size, *crew(lines))
             return
         extent = (views, size[0] // self.run, size[1])
         pixels = views * size[0] * size[1]
@@ -240,20 +247,22 @@ class Passes:
         vis, edge = layer.vis[:pixels], layer.edge[:pixels]
         words, numbers = (vis.view(kind).reshape(-1, self.run) for kind in (np.int32, np.float32))
         runs = (layer.solid, layer.level, first, self._style.outline, found, layer.marks)
-        self._borders(vis, words, numbers, edge.view(np.int32).reshape(-1, self.run), *runs, *extent)
+        self._borders(
+            vis, words, numbers, edge.view(np.int32).reshape(-1, self.run), *runs, *extent, *crew(lines)
+        )
         if self._style.outline:
             named = (a["surface_object"], a["one_color"], first)
-            self._ink.found(*seen, *named, *lookup, found, *kept, views, *size)
+            self._ink.found(*seen, *named, *lookup, found, *kept, views, *size, *crew(lines))
 
     def even_out(self, layer: Layer, color: NDArray[np.uint8], views: int, size: tuple[int, int]) -> None:
         """Smoothed bytes into ``color``."""
         final, runs = color.reshape(-1), (layer.marks, layer.level, self.linear, self.table)
+        crew = self._backend.crew(views * size[1])
         if not self._backend.on_host or size[0] % self.run:
-            self._smooth.smooth_rows(layer.picture, *runs, final, views, *size)
+            self._smooth.smooth_rows(layer.picture, *runs, final, views, *size, *crew)
             return
         run, kernels = self.run, self._smooth
-        workers = TURNS * self._backend.threads
-        scratch = self._buffer("smoothing", (workers * kernels.SCRATCH * run,), np.float32)
+        scratch = self._buffer("smoothing", (self._backend.threads * kernels.SCRATCH * run,), np.float32)
         # the buffer may be longer, from a picture of another width
         picture = layer.picture[: len(layer.picture) // run * run]
         self._smooth_runs(
@@ -268,7 +277,8 @@ class Passes:
             final.reshape(-1, run),
             views,
             *size,
-            workers,
+            *crew[:2],
+            self._backend.threads,
         )
 
     def object_ids(self, loaded: Loaded, layer: Layer, objects: NDArray[np.int32]) -> None:

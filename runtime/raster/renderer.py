@@ -48,7 +48,7 @@ class Renderer:
         self._plain = Plain(self.backend, self._buffer, self._passes.film) if self.style.plain else None
         self._moments = Moments(self.backend, self._buffer, self.style)
         self._visibility = Visibility(self.backend, self._buffer)
-        self._empty = EmptySets(self._buffer, self._passes, self._visibility)
+        self._empty = EmptySets(self.backend, self._buffer, self._passes, self._visibility)
         self._loaded: Loaded | None = None
         self._glazing: Glazing | None = None
         self._lens: Lens | None = None

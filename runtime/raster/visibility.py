@@ -16,7 +16,6 @@ from numpy.typing import NDArray
 from .device import Backend, vectorised
 
 BAND_PIXELS = 100_000  # of a band of rows that one thread fills, 8 bytes each: what its cache holds
-TURNS = 4  # shares of the work for each thread
 Buffers = Callable[[str, tuple[int, ...], type], Any]
 
 
@@ -173,6 +172,7 @@ class Visibility:
             views,
             width,
             height,
+            *self._backend.crew(views),
         )
         groups = -(-width // lanes)
         rows = max(
@@ -196,8 +196,9 @@ class Visibility:
             views,
             height,
             int(rows < height),
+            *self._backend.crew(views),
         )
-        workers = TURNS * self._backend.threads
+        (queue, slots, _), workers = self._backend.crew(views * -(-height // rows)), self._backend.threads
         line = self._buffer("line", (workers * 3 * lanes,), np.float32)
         depth = self._buffer("band_depth", (workers * rows * groups * lanes,), np.float32)
         owner = self._buffer("band_owner", (workers * rows * groups * lanes,), np.int32)
@@ -236,5 +237,7 @@ class Visibility:
             width,
             height,
             rows,
+            queue,
+            slots,
             workers,
         )

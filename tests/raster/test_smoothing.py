@@ -43,7 +43,8 @@ def smoothed(
 
         tables = (passes.linear, passes.table)
         flat = out.reshape(-1)
-        smooth_rows(picture, marks.reshape(-1), level.reshape(-1), *tables, flat, views, width, height)
+        extent, crew = (views, width, height), start("cpu").crew(views * height)
+        smooth_rows(picture, marks.reshape(-1), level.reshape(-1), *tables, flat, *extent, *crew)
     return out
 
 

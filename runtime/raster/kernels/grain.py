@@ -9,6 +9,7 @@ Noise is looked up one place at a time, and where it changes slowly along the si
 
 import taichi as ti
 
+from . import crew
 from .gather import EVEN, V, fv
 from .geometry import f1, f2, greater, i1, part3, triangle, u32s, u64s, vec3
 from .paint import RUN, SHADE, SHEET, scaled
@@ -159,36 +160,41 @@ def grain_rows(
     views: ti.i32,
     width: ti.i32,
     height: ti.i32,
+    queue: i1,
+    slots: ti.i32,
+    host: ti.template(),
 ):
     """Put the patterns of the set on a shaded picture, in place."""
-    for line in range(views * height):
-        n = line // height
-        eye, first, step = rays(view, n, line % height)
-        runs = (width + RUN - 1) // RUN
-        for run in range(runs):
-            whole = solid[line * runs + run]
-            if whole >= 0 and level[line * runs + run] >= SHADE:
-                limit = ti.min(run * RUN + RUN, width)
-                x = run * RUN
-                while x < limit:
-                    at = line * width + x
-                    t = whole - 1 if whole > 0 else triangle(vis, at)
-                    stop = limit if whole > 0 else x + 1
-                    while stop < limit and triangle(vis, at + stop - x) == t:
-                        stop += 1
-                    if 0 <= t < static_faces:
-                        material = ti.bit_cast(sheet[2 * t * SHEET + 11], ti.i32) & 255
-                        plane, near, turn, blur = surface(sheet, t, eye, first, step, x, view[n, 13])
-                        for k in ti.static(GRAINED):
-                            if material == k:
-                                for j in range(x, stop):
-                                    along = ti.cast(j, ti.f32)
-                                    z = 1.0 / (near + along * turn)
-                                    p = eye + (first + step * along) * z
-                                    factor = pattern(k, p.x, p.y, p.z, plane, blur, Alone, (lattice,))
-                                    i = line * width + j
-                                    picture[i] = scaled(picture[i], 1.0 + (factor - 1.0) * SLOPE)
-                    x = stop
+    for slot in range(slots):
+        line = crew.task(slot, views * height, queue, host)
+        if line < views * height:
+            n = line // height
+            eye, first, step = rays(view, n, line % height)
+            runs = (width + RUN - 1) // RUN
+            for run in range(runs):
+                whole = solid[line * runs + run]
+                if whole >= 0 and level[line * runs + run] >= SHADE:
+                    limit = ti.min(run * RUN + RUN, width)
+                    x = run * RUN
+                    while x < limit:
+                        at = line * width + x
+                        t = whole - 1 if whole > 0 else triangle(vis, at)
+                        stop = limit if whole > 0 else x + 1
+                        while stop < limit and triangle(vis, at + stop - x) == t:
+                            stop += 1
+                        if 0 <= t < static_faces:
+                            material = ti.bit_cast(sheet[2 * t * SHEET + 11], ti.i32) & 255
+                            plane, near, turn, blur = surface(sheet, t, eye, first, step, x, view[n, 13])
+                            for k in ti.static(GRAINED):
+                                if material == k:
+                                    for j in range(x, stop):
+                                        along = ti.cast(j, ti.f32)
+                                        z = 1.0 / (near + along * turn)
+                                        p = eye + (first + step * along) * z
+                                        factor = pattern(k, p.x, p.y, p.z, plane, blur, Alone, (lattice,))
+                                        i = line * width + j
+                                        picture[i] = scaled(picture[i], 1.0 + (factor - 1.0) * SLOPE)
+                        x = stop
 
 
 @ti.kernel
@@ -208,18 +214,20 @@ def grain_runs(
     views: ti.i32,
     width: ti.i32,
     height: ti.i32,
+    queue: i1,
+    slots: ti.i32,
     workers: ti.i32,
 ):
     """The same for rows of whole runs. number, wide, word: scratch [workers * SCRATCH], the same memory."""
-    ti.loop_config(block_dim=1)
-    for worker in range(workers):
+    for slot in range(slots):
+        worker = slot // (slots // workers)
         at = worker * SCRATCH
         lanes = laned()
         bits = ti.Vector([ti.i32(1 << lane) for lane in range(RUN)])
         nothing = bits * 0
         runs = width // RUN
-        line = worker
-        while line < views * height:
+        line = crew.task(slot, views * height, queue, True)
+        if line < views * height:
             n = line // height
             eye, first, step = rays(view, n, line % height)
             for run in range(runs):
@@ -273,4 +281,3 @@ def grain_runs(
                             if whole == 0:
                                 new = ti.select(own == ti.cast(t + 1, ti.u32), new, old)
                             picture[line * runs + run] = new
-            line += workers

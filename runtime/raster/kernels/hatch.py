@@ -10,6 +10,7 @@ nearer, strokes grow in between; nothing jumps.
 
 import taichi as ti
 
+from . import crew
 from .geometry import bounded, f1, f2, f3, i1, i2, item3, part3, row3, triangle, u32s, u64s, vec3
 from .paint import RUN, SHADE
 from .pattern import value_noise
@@ -70,83 +71,90 @@ def hatch_rows(
     views: ti.i32,
     width: ti.i32,
     height: ti.i32,
+    queue: i1,
+    slots: ti.i32,
+    host: ti.template(),
 ):
     """Turn a shaded picture into strokes, in place.
 
     own [F, 2]: how light each triangle is in all of the light, 1 for white, and the ink of its colour;
     level: luma that stays white; todo: levels of runs
     """
-    for line in range(views * height):
-        n = line // height
-        m = moment[n]
-        eye = part3(view, n, 0)
-        step = part3(view, n, 3) / view[n, 12]
-        down = -part3(view, n, 6) / view[n, 13]
-        first = part3(view, n, 9) + down * (line % height + 0.5 - view[n, 15]) + step * (0.5 - view[n, 14])
-        spacing = ti.max(SPACING * height, 3.2)
-        last = -2
-        plane, ga, gb = vec3(0), vec3(0), vec3(0)
-        offset, xa, xb = 1.0, 0.0, 0.0
-        for x in range(width):
-            i = line * width + x
-            t = triangle(vis, i)
-            if todo[line * ((width + RUN - 1) // RUN) + x // RUN] < SHADE:
-                continue
-            if t < 0:
-                picture[i] = ti.u32(PAPER)
-            else:
-                tone = ti.cast(picture[i] >> 24, ti.f32) / level
-                dark = 1.0 - tone
-                if t < static_faces:
-                    dark = 0.85 * dark - 0.05  # sets are quiet
+    for slot in range(slots):
+        line = crew.task(slot, views * height, queue, host)
+        if line < views * height:
+            n = line // height
+            m = moment[n]
+            eye = part3(view, n, 0)
+            step = part3(view, n, 3) / view[n, 12]
+            down = -part3(view, n, 6) / view[n, 13]
+            first = (
+                part3(view, n, 9) + down * (line % height + 0.5 - view[n, 15]) + step * (0.5 - view[n, 14])
+            )
+            spacing = ti.max(SPACING * height, 3.2)
+            last = -2
+            plane, ga, gb = vec3(0), vec3(0), vec3(0)
+            offset, xa, xb = 1.0, 0.0, 0.0
+            for x in range(width):
+                i = line * width + x
+                t = triangle(vis, i)
+                if todo[line * ((width + RUN - 1) // RUN) + x // RUN] < SHADE:
+                    continue
+                if t < 0:
+                    picture[i] = ti.u32(PAPER)
                 else:
-                    # people: shadows whatever the colour, and what is dark itself
-                    dark = 0.62 * (1.0 - tone / own[t, 0]) + own[t, 1]
-                ink = 0.0
-                if dark > 0.1:
-                    if t != last:
-                        last = t
-                        a, b, c = faces[t, 0], faces[t, 1], faces[t, 2]
-                        p, q1, q2 = vec3(0), vec3(0), vec3(0)
-                        if t < static_faces:
-                            p = row3(vertices, a)
-                            q1, q2 = row3(vertices, b) - p, row3(vertices, c) - p
-                        else:
-                            a, b, c = a - static_vertices, b - static_vertices, c - static_vertices
-                            p = item3(position, m, a)
-                            q1, q2 = item3(position, m, b) - p, item3(position, m, c) - p
-                        cross = q1.cross(q2)
-                        inverse = 1.0 / ti.max(cross.norm_sqr(), 1e-20)
-                        plane = cross * ti.sqrt(inverse)
-                        offset = plane.dot(p - eye)
-                        r, e1, e2 = p, q1, q2
-                        if t >= static_faces:
-                            r = row3(rest, a)
-                            e1, e2 = row3(rest, b) - r, row3(rest, c) - r
-                        # places across the strokes are linear over the triangle
-                        g1, g2 = q2.cross(cross) * inverse, cross.cross(q1) * inverse
-                        wa, wb = vec3(FIRST), vec3(SECOND)
-                        ga, gb = g1 * wa.dot(e1) + g2 * wa.dot(e2), g1 * wb.dot(e1) + g2 * wb.dot(e2)
-                        xa, xb = wa.dot(r) + ga.dot(eye - p), wb.dot(r) + gb.dot(eye - p)
-                    ray = first + step * ti.cast(x, ti.f32)
-                    facing = plane.dot(ray)
-                    z = offset / facing
-                    ra, rb = ga.dot(ray), gb.dot(ray)
-                    tx, ty = plane.dot(step) / facing, plane.dot(down) / facing
-                    place_a, place_b = xa + z * ra, xb + z * rb
-                    across_a = ti.Vector([ga.dot(step) - ra * tx, ga.dot(down) - ra * ty]).norm()
-                    half = spacing * (0.07 + 0.12 * bounded(dark, 0.0, 1.0))
-                    ink = strokes(place_a, place_b, across_a * ti.abs(z), spacing, half, lattice)
-                    ink *= eased(dark, 0.1, 0.26)
-                    if dark > 0.46:
-                        across_b = ti.Vector(
-                            [gb.dot(step) - rb * tx, gb.dot(down) - rb * ty]
-                        ).norm() * ti.abs(z)
-                        other = strokes(place_b, place_a, across_b, spacing, half, lattice)
-                        ink = ti.max(ink, other * eased(dark, 0.46, 0.58))
-                        ink = ti.max(ink, eased(dark, 0.6, 0.76))
-                shade = 1.0 - 0.93 * ink
-                r8 = ti.cast(250.0 * shade + 0.5, ti.u32)
-                g8 = ti.cast(249.0 * shade + 0.5, ti.u32)
-                b8 = ti.cast(247.0 * shade + 0.5, ti.u32)
-                picture[i] = r8 | (g8 << 8) | (b8 << 16) | (((r8 * 5 + g8 * 9 + b8 * 2) >> 4) << 24)
+                    tone = ti.cast(picture[i] >> 24, ti.f32) / level
+                    dark = 1.0 - tone
+                    if t < static_faces:
+                        dark = 0.85 * dark - 0.05  # sets are quiet
+                    else:
+                        # people: shadows whatever the colour, and what is dark itself
+                        dark = 0.62 * (1.0 - tone / own[t, 0]) + own[t, 1]
+                    ink = 0.0
+                    if dark > 0.1:
+                        if t != last:
+                            last = t
+                            a, b, c = faces[t, 0], faces[t, 1], faces[t, 2]
+                            p, q1, q2 = vec3(0), vec3(0), vec3(0)
+                            if t < static_faces:
+                                p = row3(vertices, a)
+                                q1, q2 = row3(vertices, b) - p, row3(vertices, c) - p
+                            else:
+                                a, b, c = a - static_vertices, b - static_vertices, c - static_vertices
+                                p = item3(position, m, a)
+                                q1, q2 = item3(position, m, b) - p, item3(position, m, c) - p
+                            cross = q1.cross(q2)
+                            inverse = 1.0 / ti.max(cross.norm_sqr(), 1e-20)
+                            plane = cross * ti.sqrt(inverse)
+                            offset = plane.dot(p - eye)
+                            r, e1, e2 = p, q1, q2
+                            if t >= static_faces:
+                                r = row3(rest, a)
+                                e1, e2 = row3(rest, b) - r, row3(rest, c) - r
+                            # places across the strokes are linear over the triangle
+                            g1, g2 = q2.cross(cross) * inverse, cross.cross(q1) * inverse
+                            wa, wb = vec3(FIRST), vec3(SECOND)
+                            ga, gb = g1 * wa.dot(e1) + g2 * wa.dot(e2), g1 * wb.dot(e1) + g2 * wb.dot(e2)
+                            xa, xb = wa.dot(r) + ga.dot(eye - p), wb.dot(r) + gb.dot(eye - p)
+                        ray = first + step * ti.cast(x, ti.f32)
+                        facing = plane.dot(ray)
+                        z = offset / facing
+                        ra, rb = ga.dot(ray), gb.dot(ray)
+                        tx, ty = plane.dot(step) / facing, plane.dot(down) / facing
+                        place_a, place_b = xa + z * ra, xb + z * rb
+                        across_a = ti.Vector([ga.dot(step) - ra * tx, ga.dot(down) - ra * ty]).norm()
+                        half = spacing * (0.07 + 0.12 * bounded(dark, 0.0, 1.0))
+                        ink = strokes(place_a, place_b, across_a * ti.abs(z), spacing, half, lattice)
+                        ink *= eased(dark, 0.1, 0.26)
+                        if dark > 0.46:
+                            across_b = ti.Vector(
+                                [gb.dot(step) - rb * tx, gb.dot(down) - rb * ty]
+                            ).norm() * ti.abs(z)
+                            other = strokes(place_b, place_a, across_b, spacing, half, lattice)
+                            ink = ti.max(ink, other * eased(dark, 0.46, 0.58))
+                            ink = ti.max(ink, eased(dark, 0.6, 0.76))
+                    shade = 1.0 - 0.93 * ink
+                    r8 = ti.cast(250.0 * shade + 0.5, ti.u32)
+                    g8 = ti.cast(249.0 * shade + 0.5, ti.u32)
+                    b8 = ti.cast(247.0 * shade + 0.5, ti.u32)
+                    picture[i] = r8 | (g8 << 8) | (b8 << 16) | (((r8 * 5 + g8 * 9 + b8 * 2) >> 4) << 24)

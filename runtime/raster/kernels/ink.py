@@ -12,6 +12,7 @@ from types import SimpleNamespace
 import taichi as ti
 
 from ..types import Style
+from . import crew
 from .geometry import f1, f2, i1, nearness, triangle, u32s, u64s, vec3
 from .paint import INK, NOTHING, decode, encode, unpack_normal
 from .paint import RUN as BLOCK
@@ -215,60 +216,65 @@ def ink_kernels(style: Style) -> SimpleNamespace:
         views: ti.i32,
         width: ti.i32,
         height: ti.i32,
+        queue: i1,
+        slots: ti.i32,
+        host: ti.template(),
     ):
         """Ink the picture in place, and mark in each block, a bit a pixel, where something ends.
 
         one_color: whether all of a surface is one colour, so that only its border needs smoothing;
         solid: the triangle of the set that fills each block alone, 0 for none, -1 for the backdrop
         """
-        for line in range(views * height):
-            weight = 0.0065 * view[line // height, 13]
-            y = line % height
-            blocks = (width + BLOCK - 1) // BLOCK
-            for b in range(blocks):
-                k = line * blocks + b
-                if level[k] < INK:
-                    continue
-                bits = 0
-                if not quiet(k, b, y, blocks, height, width, solid, vis):
-                    for i in range(ti.min(BLOCK, width - b * BLOCK)):
-                        x = b * BLOCK + i
-                        at = line * width + x
-                        marked = False
-                        if ti.static(outline):
-                            e = edge[at]
-                            s = ti.cast(e >> 16, ti.i32)
-                            near = False
-                            if s >= first_moving and e != ti.u32(NOTHING):
-                                near = not even(x, y, at, width, height, True, edge, vis)
-                                marked = near or one_color[s] == 0
+        for slot in range(slots):
+            line = crew.task(slot, views * height, queue, host)
+            if line < views * height:
+                weight = 0.0065 * view[line // height, 13]
+                y = line % height
+                blocks = (width + BLOCK - 1) // BLOCK
+                for b in range(blocks):
+                    k = line * blocks + b
+                    if level[k] < INK:
+                        continue
+                    bits = 0
+                    if not quiet(k, b, y, blocks, height, width, solid, vis):
+                        for i in range(ti.min(BLOCK, width - b * BLOCK)):
+                            x = b * BLOCK + i
+                            at = line * width + x
+                            marked = False
+                            if ti.static(outline):
+                                e = edge[at]
+                                s = ti.cast(e >> 16, ti.i32)
+                                near = False
+                                if s >= first_moving and e != ti.u32(NOTHING):
+                                    near = not even(x, y, at, width, height, True, edge, vis)
+                                    marked = near or one_color[s] == 0
+                                else:
+                                    marked = not alone(x, y, at, width, height, vis)
+                                    near = marked and e != ti.u32(NOTHING)
+                                    if near:
+                                        near = not even(x, y, at, width, height, False, edge, vis)
+                                if near:
+                                    draw(
+                                        x,
+                                        y,
+                                        at,
+                                        15,
+                                        width,
+                                        height,
+                                        weight,
+                                        first_moving,
+                                        picture,
+                                        edge,
+                                        vis,
+                                        owner,
+                                        linear,
+                                        table,
+                                    )
                             else:
                                 marked = not alone(x, y, at, width, height, vis)
-                                near = marked and e != ti.u32(NOTHING)
-                                if near:
-                                    near = not even(x, y, at, width, height, False, edge, vis)
-                            if near:
-                                draw(
-                                    x,
-                                    y,
-                                    at,
-                                    15,
-                                    width,
-                                    height,
-                                    weight,
-                                    first_moving,
-                                    picture,
-                                    edge,
-                                    vis,
-                                    owner,
-                                    linear,
-                                    table,
-                                )
-                        else:
-                            marked = not alone(x, y, at, width, height, vis)
-                        if marked:
-                            bits |= 1 << i
-                marks[k] = bits
+                            if marked:
+                                bits |= 1 << i
+                    marks[k] = bits
 
     @ti.kernel
     def ink_found(
@@ -287,43 +293,48 @@ def ink_kernels(style: Style) -> SimpleNamespace:
         views: ti.i32,
         width: ti.i32,
         height: ti.i32,
+        queue: i1,
+        slots: ti.i32,
+        host: ti.template(),
     ):
         """As ink_rows, where :func:`borders.find_borders` said that lines may be; its marks are completed."""
-        for line in range(views * height):
-            weight = 0.0065 * view[line // height, 13]
-            y = line % height
-            blocks = width // BLOCK
-            for b in range(blocks):
-                k = line * blocks + b
-                if level[k] < INK:
-                    continue
-                beside, upright, moving = found[3 * k], found[3 * k + 1], found[3 * k + 2]
-                if (beside | upright | moving) != 0:
-                    bits = marks[k]
-                    for i in range(BLOCK):
-                        x = b * BLOCK + i
-                        at = line * width + x
-                        two, four = beside >> i & 0x10001, upright >> i & 0x10001
-                        if (two | four) != 0:
-                            ways = (two | two >> 15) & 3 | ((four | four >> 15) & 3) << 2
-                            draw(
-                                x,
-                                y,
-                                at,
-                                ways,
-                                width,
-                                height,
-                                weight,
-                                first_moving,
-                                picture,
-                                edge,
-                                vis,
-                                owner,
-                                linear,
-                                table,
-                            )
-                        elif (moving >> i) & 1 and one_color[ti.cast(edge[at] >> 16, ti.i32)] == 0:
-                            bits |= 1 << i
-                    marks[k] = bits
+        for slot in range(slots):
+            line = crew.task(slot, views * height, queue, host)
+            if line < views * height:
+                weight = 0.0065 * view[line // height, 13]
+                y = line % height
+                blocks = width // BLOCK
+                for b in range(blocks):
+                    k = line * blocks + b
+                    if level[k] < INK:
+                        continue
+                    beside, upright, moving = found[3 * k], found[3 * k + 1], found[3 * k + 2]
+                    if (beside | upright | moving) != 0:
+                        bits = marks[k]
+                        for i in range(BLOCK):
+                            x = b * BLOCK + i
+                            at = line * width + x
+                            two, four = beside >> i & 0x10001, upright >> i & 0x10001
+                            if (two | four) != 0:
+                                ways = (two | two >> 15) & 3 | ((four | four >> 15) & 3) << 2
+                                draw(
+                                    x,
+                                    y,
+                                    at,
+                                    ways,
+                                    width,
+                                    height,
+                                    weight,
+                                    first_moving,
+                                    picture,
+                                    edge,
+                                    vis,
+                                    owner,
+                                    linear,
+                                    table,
+                                )
+                            elif (moving >> i) & 1 and one_color[ti.cast(edge[at] >> 16, ti.i32)] == 0:
+                                bits |= 1 << i
+                        marks[k] = bits
 
     return SimpleNamespace(rows=ink_rows, found=ink_found)

@@ -11,6 +11,7 @@ need no further look.
 
 import taichi as ti
 
+from . import crew
 from .geometry import f1, f2, f3, greater, i1, i2, lesser, to_pixel, vec3
 
 BLOCK, BLOCK_BITS = 8, 3  # shifting is quicker than dividing what might be negative
@@ -45,28 +46,33 @@ def fit(
     moments: ti.i32,
     seen: f3,
     frame: f2,
+    queue: i1,
+    slots: ti.i32,
+    host: ti.template(),
 ):
     """Light coordinates of all vertices, and the frame [M, 3] of each moment's map: its corner across the
     light, and texels a metre.
 
     The corner lies on whole texels and the scale on half octaves, so that the map does not swim.
     """
-    for m in range(moments):
-        low = vec3(1e30)
-        high = vec3(-1e30)
-        for v in range(vertices):
-            q = across(basis, vec3(position[m, v, 0], position[m, v, 1], position[m, v, 2]))
-            low = ti.min(low, q)
-            high = ti.max(high, q)
-            for a in ti.static(range(3)):
-                seen[m, v, a] = q[a]
-        extent = ti.max(high.x - low.x, high.y - low.y, 1e-3)
-        texel = finest
-        while texel * (size - 8) < extent:
-            texel *= ti.sqrt(2.0)
-        frame[m, 0] = (ti.floor(low.x / texel) - 3) * texel
-        frame[m, 1] = (ti.floor(low.y / texel) - 3) * texel
-        frame[m, 2] = 1.0 / texel
+    for slot in range(slots):
+        m = crew.task(slot, moments, queue, host)
+        if m < moments:
+            low = vec3(1e30)
+            high = vec3(-1e30)
+            for v in range(vertices):
+                q = across(basis, vec3(position[m, v, 0], position[m, v, 1], position[m, v, 2]))
+                low = ti.min(low, q)
+                high = ti.max(high, q)
+                for a in ti.static(range(3)):
+                    seen[m, v, a] = q[a]
+            extent = ti.max(high.x - low.x, high.y - low.y, 1e-3)
+            texel = finest
+            while texel * (size - 8) < extent:
+                texel *= ti.sqrt(2.0)
+            frame[m, 0] = (ti.floor(low.x / texel) - 3) * texel
+            frame[m, 1] = (ti.floor(low.y / texel) - 3) * texel
+            frame[m, 2] = 1.0 / texel
 
 
 @ti.kernel
@@ -81,19 +87,24 @@ def cast(
     depth: f1,
     spare: f1,
     coarse: f1,
+    queue: i1,
+    slots: ti.i32,
+    host: ti.template(),
 ):
     """Draw the casters into each moment's map, and the coarse map of it."""
-    for m in range(moments):
-        base = m * size * size
-        for i in range(size * size):
-            depth[base + i] = NOWHERE
-        for i in range(casters.shape[0]):
-            t = casters[i]
-            a = on_map(seen, m, faces[t, 0] - offset, frame)
-            b = on_map(seen, m, faces[t, 1] - offset, frame)
-            c = on_map(seen, m, faces[t, 2] - offset, frame)
-            stamp(depth, base, size, a, b, c)
-        summarise(depth, base, size, spare, coarse, m)
+    for slot in range(slots):
+        m = crew.task(slot, moments, queue, host)
+        if m < moments:
+            base = m * size * size
+            for i in range(size * size):
+                depth[base + i] = NOWHERE
+            for i in range(casters.shape[0]):
+                t = casters[i]
+                a = on_map(seen, m, faces[t, 0] - offset, frame)
+                b = on_map(seen, m, faces[t, 1] - offset, frame)
+                c = on_map(seen, m, faces[t, 2] - offset, frame)
+                stamp(depth, base, size, a, b, c)
+            summarise(depth, base, size, spare, coarse, m)
 
 
 @ti.func
@@ -304,41 +315,53 @@ def above_floor(z, floor: ti.template()):
 
 @ti.kernel
 def touch(
-    position: f3, area: f1, moments: ti.i32, floor: f1, columns: ti.i32, rows: ti.i32, spare: f1, ground: f1
+    position: f3,
+    area: f1,
+    moments: ti.i32,
+    floor: f1,
+    columns: ti.i32,
+    rows: ti.i32,
+    spare: f1,
+    ground: f1,
+    queue: i1,
+    slots: ti.i32,
+    host: ti.template(),
 ):
     """How closely moving things stand over each cell of the floor, blurred: ground [M, rows, columns].
 
     area: surface each skinned vertex stands for, square metres; floor: corner x, y, cells a metre, then the
         heights of the floors, rising
     """
-    for m in range(moments):
-        cells = rows * columns
-        base = m * cells
-        for i in range(cells):
-            ground[base + i] = 0.0
-        left, right, low, high = columns, -1, rows, -1
-        for v in range(area.shape[0]):
-            z = above_floor(position[m, v, 2], floor)
-            x = ti.cast(ti.floor((position[m, v, 0] - floor[0]) * floor[2]), ti.i32)
-            y = ti.cast(ti.floor((position[m, v, 1] - floor[1]) * floor[2]), ti.i32)
-            if z < 0.4 and 0 <= x < columns and 0 <= y < rows:
-                share = 1.0 - ti.max(z, 0.0) / 0.4
-                ground[base + y * columns + x] += area[v] * share * share * floor[2] * floor[2]
-                left, right = ti.min(left, x), ti.max(right, x)
-                low, high = ti.min(low, y), ti.max(high, y)
-        if right >= 0:
-            left, right = ti.max(left - 8, 0), ti.min(right + 9, columns)
-            low, high = ti.max(low - 8, 0), ti.min(high + 9, rows)
-            for _ in range(3):
-                for y in range(low, high):
-                    for x in range(left, right):
-                        at = base + y * columns + x
-                        a = ground[at - 1] if x > left else 0.0
-                        b = ground[at + 1] if x < right - 1 else 0.0
-                        spare[at] = (a + ground[at] + b) / 3.0
-                for y in range(low, high):
-                    for x in range(left, right):
-                        at = base + y * columns + x
-                        a = spare[at - columns] if y > low else 0.0
-                        b = spare[at + columns] if y < high - 1 else 0.0
-                        ground[at] = (a + spare[at] + b) / 3.0
+    for slot in range(slots):
+        m = crew.task(slot, moments, queue, host)
+        if m < moments:
+            cells = rows * columns
+            base = m * cells
+            for i in range(cells):
+                ground[base + i] = 0.0
+            left, right, low, high = columns, -1, rows, -1
+            for v in range(area.shape[0]):
+                z = above_floor(position[m, v, 2], floor)
+                x = ti.cast(ti.floor((position[m, v, 0] - floor[0]) * floor[2]), ti.i32)
+                y = ti.cast(ti.floor((position[m, v, 1] - floor[1]) * floor[2]), ti.i32)
+                if z < 0.4 and 0 <= x < columns and 0 <= y < rows:
+                    share = 1.0 - ti.max(z, 0.0) / 0.4
+                    ground[base + y * columns + x] += area[v] * share * share * floor[2] * floor[2]
+                    left, right = ti.min(left, x), ti.max(right, x)
+                    low, high = ti.min(low, y), ti.max(high, y)
+            if right >= 0:
+                left, right = ti.max(left - 8, 0), ti.min(right + 9, columns)
+                low, high = ti.max(low - 8, 0), ti.min(high + 9, rows)
+                for _ in range(3):
+                    for y in range(low, high):
+                        for x in range(left, right):
+                            at = base + y * columns + x
+                            a = ground[at - 1] if x > left else 0.0
+                            b = ground[at + 1] if x < right - 1 else 0.0
+                            spare[at] = (a + ground[at] + b) / 3.0
+                    for y in range(low, high):
+                        for x in range(left, right):
+                            at = base + y * columns + x
+                            a = spare[at - columns] if y > low else 0.0
+                            b = spare[at + columns] if y < high - 1 else 0.0
+                            ground[at] = (a + spare[at] + b) / 3.0

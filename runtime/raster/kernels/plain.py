@@ -9,6 +9,7 @@ Light does not depend on the camera, so faces of the set with one normal have on
 
 import taichi as ti
 
+from . import crew
 from .geometry import (
     bounded,
     f1,
@@ -108,83 +109,88 @@ def plain_rows(
     views: ti.i32,
     width: ti.i32,
     height: ti.i32,
+    queue: i1,
+    slots: ti.i32,
+    host: ti.template(),
 ):
     """Shade all views into ``picture``, packed."""
-    for line in range(views * height):
-        n = line // height
-        m = moment[n]
-        eye = part3(view, n, 0)
-        step = part3(view, n, 3) / view[n, 12]
-        first = (
-            part3(view, n, 9)
-            + part3(view, n, 6) * ((view[n, 15] - (line % height + 0.5)) / view[n, 13])
-            + step * (0.5 - view[n, 14])
-        )
-        horizon, zenith = load3(light, 12), load3(light, 15)
-        last = -2
-        flat, behind = False, False
-        whole = ti.u32(0)
-        p, g1, g2 = vec3(0), vec3(0), vec3(0)
-        c0, c1, c2 = vec3(0), vec3(0), vec3(0)
-        x = 0
-        while x < width:
-            at = line * width + x
-            t = triangle(vis, at)
-            if t != last:
-                last = t
-                flat = False
-                if t >= static_faces:
-                    a, b = faces[t, 0] - static_vertices, faces[t, 1] - static_vertices
-                    c = faces[t, 2] - static_vertices
-                    p = item3(position, m, a)
-                    q1, q2 = item3(position, m, b) - p, item3(position, m, c) - p
-                    cross = q1.cross(q2)
-                    p -= eye
-                    side = 1.0 if cross.dot(p) <= 0 else -1.0
-                    inverse = 1.0 / greater(cross.norm_sqr(), 1e-20)
-                    g1, g2 = q2.cross(cross) * inverse, cross.cross(q1) * inverse
-                    base = row3(color, t)
-                    c0 = base * light_on(item3(normal, m, a) * side, light)
-                    c1 = base * light_on(item3(normal, m, b) * side, light) - c0
-                    c2 = base * light_on(item3(normal, m, c) * side, light) - c0
-                elif t >= 0:
-                    row = t * CARD
-                    behind = load3(card, row + 9).dot(eye) < card[row + 12]
-                    flat = card[row + 15] > 0
-                    whole = ti.bit_cast(card[row + 14] if behind else card[row + 13], ti.u32)
-                    if not flat:
-                        p, g1, g2 = load3(card, row) - eye, load3(card, row + 3), load3(card, row + 6)
-                        side = -1.0 if behind else 1.0
+    for slot in range(slots):
+        line = crew.task(slot, views * height, queue, host)
+        if line < views * height:
+            n = line // height
+            m = moment[n]
+            eye = part3(view, n, 0)
+            step = part3(view, n, 3) / view[n, 12]
+            first = (
+                part3(view, n, 9)
+                + part3(view, n, 6) * ((view[n, 15] - (line % height + 0.5)) / view[n, 13])
+                + step * (0.5 - view[n, 14])
+            )
+            horizon, zenith = load3(light, 12), load3(light, 15)
+            last = -2
+            flat, behind = False, False
+            whole = ti.u32(0)
+            p, g1, g2 = vec3(0), vec3(0), vec3(0)
+            c0, c1, c2 = vec3(0), vec3(0), vec3(0)
+            x = 0
+            while x < width:
+                at = line * width + x
+                t = triangle(vis, at)
+                if t != last:
+                    last = t
+                    flat = False
+                    if t >= static_faces:
+                        a, b = faces[t, 0] - static_vertices, faces[t, 1] - static_vertices
+                        c = faces[t, 2] - static_vertices
+                        p = item3(position, m, a)
+                        q1, q2 = item3(position, m, b) - p, item3(position, m, c) - p
+                        cross = q1.cross(q2)
+                        p -= eye
+                        side = 1.0 if cross.dot(p) <= 0 else -1.0
+                        inverse = 1.0 / greater(cross.norm_sqr(), 1e-20)
+                        g1, g2 = q2.cross(cross) * inverse, cross.cross(q1) * inverse
                         base = row3(color, t)
-                        c0 = base * light_on(row3(normals, faces[t, 0]) * side, light)
-                        c1 = base * light_on(row3(normals, faces[t, 1]) * side, light) - c0
-                        c2 = base * light_on(row3(normals, faces[t, 2]) * side, light) - c0
-            if flat:
-                i = at
-                end = (line + 1) * width
-                while i < end and triangle(vis, i) == t:
-                    picture[i] = whole
-                    i += 1
-                x += i - at
-            else:
-                stop = x + 1
-                limit = ti.min(width, x + STRETCH)
-                while stop < limit and triangle(vis, at + stop - x) == t:
-                    stop += 1
-                here, there = ti.Vector([0, 0, 0]), ti.Vector([0, 0, 0])
-                for k in range(2):
-                    here = there
-                    if k == 0 or stop > x + 1:
-                        place = x if k == 0 else stop - 1
-                        ray = first + step * ti.cast(place, ti.f32)
-                        if t < 0:
-                            there = backdrop(ray, horizon, zenith, film)
-                        else:
-                            d = ray * (1.0 / nearness(vis, at + place - x)) - p
-                            b1, b2 = bounded(d.dot(g1), 0.0, 1.0), bounded(d.dot(g2), 0.0, 1.0)
-                            there = exposed(c0 + c1 * b1 + c2 * b2, film)
-                ramp(here, there, stop - 1 - x, at, stop - x, picture)
-                x = stop
+                        c0 = base * light_on(item3(normal, m, a) * side, light)
+                        c1 = base * light_on(item3(normal, m, b) * side, light) - c0
+                        c2 = base * light_on(item3(normal, m, c) * side, light) - c0
+                    elif t >= 0:
+                        row = t * CARD
+                        behind = load3(card, row + 9).dot(eye) < card[row + 12]
+                        flat = card[row + 15] > 0
+                        whole = ti.bit_cast(card[row + 14] if behind else card[row + 13], ti.u32)
+                        if not flat:
+                            p, g1, g2 = load3(card, row) - eye, load3(card, row + 3), load3(card, row + 6)
+                            side = -1.0 if behind else 1.0
+                            base = row3(color, t)
+                            c0 = base * light_on(row3(normals, faces[t, 0]) * side, light)
+                            c1 = base * light_on(row3(normals, faces[t, 1]) * side, light) - c0
+                            c2 = base * light_on(row3(normals, faces[t, 2]) * side, light) - c0
+                if flat:
+                    i = at
+                    end = (line + 1) * width
+                    while i < end and triangle(vis, i) == t:
+                        picture[i] = whole
+                        i += 1
+                    x += i - at
+                else:
+                    stop = x + 1
+                    limit = ti.min(width, x + STRETCH)
+                    while stop < limit and triangle(vis, at + stop - x) == t:
+                        stop += 1
+                    here, there = ti.Vector([0, 0, 0]), ti.Vector([0, 0, 0])
+                    for k in range(2):
+                        here = there
+                        if k == 0 or stop > x + 1:
+                            place = x if k == 0 else stop - 1
+                            ray = first + step * ti.cast(place, ti.f32)
+                            if t < 0:
+                                there = backdrop(ray, horizon, zenith, film)
+                            else:
+                                d = ray * (1.0 / nearness(vis, at + place - x)) - p
+                                b1, b2 = bounded(d.dot(g1), 0.0, 1.0), bounded(d.dot(g2), 0.0, 1.0)
+                                there = exposed(c0 + c1 * b1 + c2 * b2, film)
+                    ramp(here, there, stop - 1 - x, at, stop - x, picture)
+                    x = stop
 
 
 @ti.kernel

@@ -12,6 +12,7 @@ around these stair-steps are smoothed anew; everything else is copied. For the h
 
 import taichi as ti
 
+from . import crew
 from .ambient import lift_of
 from .geometry import f1, f2, greater, i1, i2, lesser, nearness, part3, triangle, u64s, vec3
 from .light import MANY, across, clear_over
@@ -26,7 +27,18 @@ quads = ti.types.ndarray(dtype=ti.types.vector(4, ti.u32), ndim=1)
 
 
 @ti.kernel
-def reach_of(view: f2, vis: u64s, basis: f1, views: ti.i32, width: ti.i32, height: ti.i32, reach: f1):
+def reach_of(
+    view: f2,
+    vis: u64s,
+    basis: f1,
+    views: ti.i32,
+    width: ti.i32,
+    height: ti.i32,
+    reach: f1,
+    queue: i1,
+    slots: ti.i32,
+    host: ti.template(),
+):
     """Where each tile of an empty set (BAND rows of a run) lies in the light, the first pixel of its
     neighbour included.
 
@@ -35,35 +47,37 @@ def reach_of(view: f2, vis: u64s, basis: f1, views: ti.i32, width: ti.i32, heigh
     """
     runs = (width + RUN - 1) // RUN
     tiles = (height + BAND - 1) // BAND
-    for task in range(views * tiles):
-        n, top = task // tiles, (task % tiles) * BAND
-        eye = part3(view, n, 0)
-        step = part3(view, n, 3) / view[n, 12]
-        for run in range(runs):
-            low, high = vec3(1e30), vec3(-1e30)
-            floor_low, floor_high = vec3(1e30), vec3(-1e30)
-            for y in range(top, ti.min(height, top + BAND)):
-                first = (
-                    part3(view, n, 9)
-                    + part3(view, n, 6) * ((view[n, 15] - (y + 0.5)) / view[n, 13])
-                    + step * (0.5 - view[n, 14])
-                )
-                line = n * height + y
-                for x in range(run * RUN, ti.min(width, run * RUN + RUN + 1)):
-                    if triangle(vis, line * width + x) >= 0:
-                        p = eye + (first + step * ti.cast(x, ti.f32)) * (
-                            1.0 / nearness(vis, line * width + x)
-                        )
-                        q = across(basis, p)
-                        low, high = ti.min(low, q), ti.max(high, q)
-                        floor_low, floor_high = ti.min(floor_low, p), ti.max(floor_high, p)
-            at = (task * runs + run) * REACH
-            for a in ti.static(range(2)):
-                reach[at + 2 * a] = low[a]
-                reach[at + 2 * a + 1] = high[a]
-                reach[at + 5 + 2 * a] = floor_low[a]
-                reach[at + 6 + 2 * a] = floor_high[a]
-            reach[at + 4] = low.z
+    for slot in range(slots):
+        task = crew.task(slot, views * tiles, queue, host)
+        if task < views * tiles:
+            n, top = task // tiles, (task % tiles) * BAND
+            eye = part3(view, n, 0)
+            step = part3(view, n, 3) / view[n, 12]
+            for run in range(runs):
+                low, high = vec3(1e30), vec3(-1e30)
+                floor_low, floor_high = vec3(1e30), vec3(-1e30)
+                for y in range(top, ti.min(height, top + BAND)):
+                    first = (
+                        part3(view, n, 9)
+                        + part3(view, n, 6) * ((view[n, 15] - (y + 0.5)) / view[n, 13])
+                        + step * (0.5 - view[n, 14])
+                    )
+                    line = n * height + y
+                    for x in range(run * RUN, ti.min(width, run * RUN + RUN + 1)):
+                        if triangle(vis, line * width + x) >= 0:
+                            p = eye + (first + step * ti.cast(x, ti.f32)) * (
+                                1.0 / nearness(vis, line * width + x)
+                            )
+                            q = across(basis, p)
+                            low, high = ti.min(low, q), ti.max(high, q)
+                            floor_low, floor_high = ti.min(floor_low, p), ti.max(floor_high, p)
+                at = (task * runs + run) * REACH
+                for a in ti.static(range(2)):
+                    reach[at + 2 * a] = low[a]
+                    reach[at + 2 * a + 1] = high[a]
+                    reach[at + 5 + 2 * a] = floor_low[a]
+                    reach[at + 6 + 2 * a] = floor_high[a]
+                reach[at + 4] = low.z
 
 
 @ti.kernel
@@ -171,6 +185,9 @@ def find(
     height: ti.i32,
     level: i1,
     block: i1,
+    queue: i1,
+    slots: ti.i32,
+    host: ti.template(),
 ):
     """Which runs are drawn anew, all of a tile or none: their level is SHADE, others' DONE.
 
@@ -183,76 +200,91 @@ def find(
     bands = (height + RUN - 1) // RUN
     tiles = (height + BAND - 1) // BAND
     each = ti.static(RUN // BAND)
-    for task in range(views * bands):
-        n, band = task // bands, task % bands
-        m, s = moment[n], empty[n]
-        for run in range(runs):
-            some = 0
-            clear = False  # whether the light of the whole block is that of the empty set
-            if s >= 0:
-                at = ((s * bands + band) * runs + run) * REACH
-                clear = not stood_on(at, m, bounds, wide, floor, columns, rows, ground)
-                if clear:
-                    clear = not shaded(at, m, wide, frame, size, coarse)
-            for tile in range(band * each, ti.min(tiles, band * each + each)):
-                bottom = ti.min(height, tile * BAND + BAND)
-                x = run * RUN
-                anew = s < 0
-                for y in range(tile * BAND, bottom):
-                    k = (n * height + y) * runs + run
-                    here, there = (n * height + y) * width, (s * height + y) * width
-                    if not anew and touched[k] != 0:
-                        i = x
-                        while i < width and i < x + RUN and not anew:
-                            anew = vis[here + i] != empty_vis[there + i]
-                            i += 1
-                    # the last pixel of the run before and the first of the next one have a say
-                    if not anew and run > 0 and touched[k - 1] != 0:
-                        anew = vis[here + x - 1] != empty_vis[there + x - 1]
-                    if not anew and run < runs - 1 and touched[k + 1] != 0:
-                        anew = vis[here + x + RUN] != empty_vis[there + x + RUN]
-                    if box[n, 2] <= y < box[n, 3] and x < box[n, 1] and x + RUN > box[n, 0]:
-                        anew = True
-                if not anew and not clear:
-                    at = ((s * tiles + tile) * runs + run) * REACH
-                    anew = stood_on(at, m, bounds, reach, floor, columns, rows, ground)
-                    if not anew:
-                        anew = shaded(at, m, reach, frame, size, coarse)
-                for y in range(tile * BAND, bottom):
-                    level[(n * height + y) * runs + run] = SHADE if anew else DONE
-                if anew:
-                    some = 1
-            block[task * runs + run] = some
+    for slot in range(slots):
+        task = crew.task(slot, views * bands, queue, host)
+        if task < views * bands:
+            n, band = task // bands, task % bands
+            m, s = moment[n], empty[n]
+            for run in range(runs):
+                some = 0
+                clear = False  # whether the light of the whole block is that of the empty set
+                if s >= 0:
+                    at = ((s * bands + band) * runs + run) * REACH
+                    clear = not stood_on(at, m, bounds, wide, floor, columns, rows, ground)
+                    if clear:
+                        clear = not shaded(at, m, wide, frame, size, coarse)
+                for tile in range(band * each, ti.min(tiles, band * each + each)):
+                    bottom = ti.min(height, tile * BAND + BAND)
+                    x = run * RUN
+                    anew = s < 0
+                    for y in range(tile * BAND, bottom):
+                        k = (n * height + y) * runs + run
+                        here, there = (n * height + y) * width, (s * height + y) * width
+                        if not anew and touched[k] != 0:
+                            i = x
+                            while i < width and i < x + RUN and not anew:
+                                anew = vis[here + i] != empty_vis[there + i]
+                                i += 1
+                        # the last pixel of the run before and the first of the next one have a say
+                        if not anew and run > 0 and touched[k - 1] != 0:
+                            anew = vis[here + x - 1] != empty_vis[there + x - 1]
+                        if not anew and run < runs - 1 and touched[k + 1] != 0:
+                            anew = vis[here + x + RUN] != empty_vis[there + x + RUN]
+                        if box[n, 2] <= y < box[n, 3] and x < box[n, 1] and x + RUN > box[n, 0]:
+                            anew = True
+                    if not anew and not clear:
+                        at = ((s * tiles + tile) * runs + run) * REACH
+                        anew = stood_on(at, m, bounds, reach, floor, columns, rows, ground)
+                        if not anew:
+                            anew = shaded(at, m, reach, frame, size, coarse)
+                    for y in range(tile * BAND, bottom):
+                        level[(n * height + y) * runs + run] = SHADE if anew else DONE
+                    if anew:
+                        some = 1
+                block[task * runs + run] = some
 
 
 @ti.kernel
-def settle(block: i1, whole: ti.i32, views: ti.i32, width: ti.i32, height: ti.i32, level: i1, source: i1):
+def settle(
+    block: i1,
+    whole: ti.i32,
+    views: ti.i32,
+    width: ti.i32,
+    height: ti.i32,
+    level: i1,
+    source: i1,
+    queue: i1,
+    slots: ti.i32,
+    host: ti.template(),
+):
     """The levels of all runs, and in ``source`` what is copied into each: SHADED, INKED or FINAL colours.
 
     whole: all pictures are to be complete before they are smoothed, for what is laid over them
     """
     runs = (width + RUN - 1) // RUN
     bands = (height + RUN - 1) // RUN
-    for task in range(views * bands):
-        n, band = task // bands, task % bands
-        for run in range(runs):
-            away = 4  # blocks to the nearest that is drawn anew
-            for j in range(ti.max(band - 3, 0), ti.min(bands, band + 4)):
-                for i in range(ti.max(run - 3, 0), ti.min(runs, run + 4)):
-                    if block[(n * bands + j) * runs + i] == 1:
-                        away = ti.min(away, ti.max(ti.abs(j - band), ti.abs(i - run)))
-            for y in range(band * RUN, ti.min(height, band * RUN + RUN)):
-                k = (n * height + y) * runs + run
-                source[k] = NOWHERE
-                if level[k] != SHADE:
-                    if away <= 1:
-                        level[k] = INK
-                        source[k] = SHADED
-                    elif away == 2 or whole == 1:
-                        level[k] = SMOOTH
-                        source[k] = INKED
-                    else:
-                        source[k] = INKED + FINAL if away == 3 else FINAL
+    for slot in range(slots):
+        task = crew.task(slot, views * bands, queue, host)
+        if task < views * bands:
+            n, band = task // bands, task % bands
+            for run in range(runs):
+                away = 4  # blocks to the nearest that is drawn anew
+                for j in range(ti.max(band - 3, 0), ti.min(bands, band + 4)):
+                    for i in range(ti.max(run - 3, 0), ti.min(runs, run + 4)):
+                        if block[(n * bands + j) * runs + i] == 1:
+                            away = ti.min(away, ti.max(ti.abs(j - band), ti.abs(i - run)))
+                for y in range(band * RUN, ti.min(height, band * RUN + RUN)):
+                    k = (n * height + y) * runs + run
+                    source[k] = NOWHERE
+                    if level[k] != SHADE:
+                        if away <= 1:
+                            level[k] = INK
+                            source[k] = SHADED
+                        elif away == 2 or whole == 1:
+                            level[k] = SMOOTH
+                            source[k] = INKED
+                        else:
+                            source[k] = INKED + FINAL if away == 3 else FINAL
 
 
 @ti.kernel
@@ -273,22 +305,27 @@ def take_over(
     views: ti.i32,
     runs: ti.i32,
     height: ti.i32,
+    queue: i1,
+    slots: ti.i32,
+    host: ti.template(),
 ):
     """Copy from the empty sets what :func:`settle` said. Rows are whole runs."""
-    for line in range(views * height):
-        begin = line * runs
-        there = (empty[line // height] * height + line % height) * runs
-        for run in range(runs):
-            what = source[begin + run]
-            k, from_k = begin + run, there + run
-            if what != NOWHERE and what != FINAL:
-                edge[k] = empty_edge[from_k]
-                solid[k] = empty_solid[from_k]
-                if what == SHADED:
-                    picture[k] = empty_shaded[from_k]
-                else:
-                    picture[k] = empty_inked[from_k]
-                    marks[k] = empty_marks[from_k]
-            if what >= FINAL:
-                for i in ti.static(range(3)):
-                    final[3 * k + i] = empty_final[3 * from_k + i]
+    for slot in range(slots):
+        line = crew.task(slot, views * height, queue, host)
+        if line < views * height:
+            begin = line * runs
+            there = (empty[line // height] * height + line % height) * runs
+            for run in range(runs):
+                what = source[begin + run]
+                k, from_k = begin + run, there + run
+                if what != NOWHERE and what != FINAL:
+                    edge[k] = empty_edge[from_k]
+                    solid[k] = empty_solid[from_k]
+                    if what == SHADED:
+                        picture[k] = empty_shaded[from_k]
+                    else:
+                        picture[k] = empty_inked[from_k]
+                        marks[k] = empty_marks[from_k]
+                if what >= FINAL:
+                    for i in ti.static(range(3)):
+                        final[3 * k + i] = empty_final[3 * from_k + i]

@@ -13,6 +13,7 @@ import numpy as np
 import taichi as ti
 from numpy.typing import NDArray
 
+from . import crew
 from .geometry import i1, i2, triangle, u32s, u64s
 from .paint import RUN, SHADE
 from .spans import qv, uv
@@ -54,90 +55,120 @@ def mixed(a, b, weight):
 
 
 @ti.kernel
-def match_runs(rows: i2, vis: qv, picture: uv, edge: uv, solid: i1, level: i1, left: i1, runs: ti.i32):
+def match_runs(
+    rows: i2,
+    vis: qv,
+    picture: uv,
+    edge: uv,
+    solid: i1,
+    level: i1,
+    left: i1,
+    runs: ti.i32,
+    queue: i1,
+    slots: ti.i32,
+    host: ti.template(),
+):
     """Colours of the rows in between, sixteen pixels at a time, where rows are ``runs`` whole runs.
 
     rows [K, 4]: as in :func:`planned`; left: bits of the pixels of each run that are still to be shaded
     """
-    for i in range(rows.shape[0]):
-        lanes = ti.Vector([ti.i32(1 << lane) for lane in range(RUN)])
-        nothing = lanes * 0
-        weight = rows[i, 3]
-        for run in range(runs):
-            k = rows[i, 0] * runs + run
-            if level[k] >= SHADE:
-                upper, lower = rows[i, 1] * runs + run, rows[i, 2] * runs + run
-                own = ti.cast(vis[k], ti.u32)
-                over, under = ti.cast(vis[upper], ti.u32), ti.cast(vis[lower], ti.u32)
-                a, b = picture[upper], picture[lower]
-                bent, bent_too = edge[upper], edge[lower]
-                apart = (a >> 24) - (b >> 24) + ti.u32(ABRUPT)
-                turn = (bent & ti.u32(255)) - (bent_too & ti.u32(255)) + ti.u32(TURN)
-                turn_too = (bent >> 8 & ti.u32(255)) - (bent_too >> 8 & ti.u32(255)) + ti.u32(TURN)
-                jumps = ti.select(apart > ti.u32(2 * ABRUPT), lanes, nothing)
-                jumps = ti.select(turn > ti.u32(2 * TURN), lanes, jumps)
-                jumps = ti.select(turn_too > ti.u32(2 * TURN), lanes, jumps)
-                one = ti.select(own == under, nothing, lanes)
-                lost = 0
-                if weight > 128:
-                    lost = ti.select(own == under, ti.select(own == over, jumps, nothing), lanes).sum()
-                else:
-                    lost = ti.select(own == over, ti.select(own == under, jumps, nothing), lanes).sum()
-                left[k] = lost
-                value = 0
-                if lost == 0:
-                    value = solid[upper]
-                    # at the border of two triangles either may fill it
-                    if value != solid[lower] and ti.select(own == over, nothing, lanes).sum() != 0:
-                        value = solid[lower] if one.sum() == 0 else 0
-                solid[k] = value
-                between = ti.select(own == under, mixed(a, b, weight), a)
-                picture[k] = ti.select(own == over, between, b)
-                between = ti.select(own == under, mixed(bent, bent_too, weight), bent)
-                edge[k] = ti.select(own == over, between, bent_too)
+    for slot in range(slots):
+        i = crew.task(slot, rows.shape[0], queue, host)
+        if i < rows.shape[0]:
+            lanes = ti.Vector([ti.i32(1 << lane) for lane in range(RUN)])
+            nothing = lanes * 0
+            weight = rows[i, 3]
+            for run in range(runs):
+                k = rows[i, 0] * runs + run
+                if level[k] >= SHADE:
+                    upper, lower = rows[i, 1] * runs + run, rows[i, 2] * runs + run
+                    own = ti.cast(vis[k], ti.u32)
+                    over, under = ti.cast(vis[upper], ti.u32), ti.cast(vis[lower], ti.u32)
+                    a, b = picture[upper], picture[lower]
+                    bent, bent_too = edge[upper], edge[lower]
+                    apart = (a >> 24) - (b >> 24) + ti.u32(ABRUPT)
+                    turn = (bent & ti.u32(255)) - (bent_too & ti.u32(255)) + ti.u32(TURN)
+                    turn_too = (bent >> 8 & ti.u32(255)) - (bent_too >> 8 & ti.u32(255)) + ti.u32(TURN)
+                    jumps = ti.select(apart > ti.u32(2 * ABRUPT), lanes, nothing)
+                    jumps = ti.select(turn > ti.u32(2 * TURN), lanes, jumps)
+                    jumps = ti.select(turn_too > ti.u32(2 * TURN), lanes, jumps)
+                    one = ti.select(own == under, nothing, lanes)
+                    lost = 0
+                    if weight > 128:
+                        lost = ti.select(own == under, ti.select(own == over, jumps, nothing), lanes).sum()
+                    else:
+                        lost = ti.select(own == over, ti.select(own == under, jumps, nothing), lanes).sum()
+                    left[k] = lost
+                    value = 0
+                    if lost == 0:
+                        value = solid[upper]
+                        # at the border of two triangles either may fill it
+                        if value != solid[lower] and ti.select(own == over, nothing, lanes).sum() != 0:
+                            value = solid[lower] if one.sum() == 0 else 0
+                    solid[k] = value
+                    between = ti.select(own == under, mixed(a, b, weight), a)
+                    picture[k] = ti.select(own == over, between, b)
+                    between = ti.select(own == under, mixed(bent, bent_too, weight), bent)
+                    edge[k] = ti.select(own == over, between, bent_too)
 
 
 @ti.kernel
-def match_rows(rows: i2, vis: u64s, picture: u32s, edge: u32s, solid: i1, level: i1, left: i1, width: ti.i32):
+def match_rows(
+    rows: i2,
+    vis: u64s,
+    picture: u32s,
+    edge: u32s,
+    solid: i1,
+    level: i1,
+    left: i1,
+    width: ti.i32,
+    queue: i1,
+    slots: ti.i32,
+    host: ti.template(),
+):
     """The same pixel by pixel."""
     runs = (width + RUN - 1) // RUN
-    for i in range(rows.shape[0]):
-        weight = rows[i, 3]
-        for run in range(runs):
-            k = rows[i, 0] * runs + run
-            if level[k] >= SHADE:
-                upper, lower = rows[i, 1] * runs + run, rows[i, 2] * runs + run
-                not_upper, not_lower, lost = 0, 0, 0
-                for x in range(run * RUN, ti.min(width, run * RUN + RUN)):
-                    bit = 1 << (x - run * RUN)
-                    at = rows[i, 0] * width + x
-                    over, under = rows[i, 1] * width + x, rows[i, 2] * width + x
-                    t = triangle(vis, at)
-                    a, b = picture[over], picture[under]
-                    bent, bent_too = edge[over], edge[under]
-                    above, below = t == triangle(vis, over), t == triangle(vis, under)
-                    if not above:
-                        not_upper |= bit
-                    if not below:
-                        not_lower |= bit
-                    picture[at] = b
-                    edge[at] = bent_too
-                    if above:
-                        picture[at] = mixed(a, b, weight) if below else a
-                        edge[at] = mixed(bent, bent_too, weight) if below else bent
-                    if above and below:
-                        apart = (a >> 24) - (b >> 24) + ti.u32(ABRUPT) > ti.u32(2 * ABRUPT)
-                        turn = (bent & ti.u32(255)) - (bent_too & ti.u32(255)) + ti.u32(TURN)
-                        turn_too = (bent >> 8 & ti.u32(255)) - (bent_too >> 8 & ti.u32(255)) + ti.u32(TURN)
-                        if apart or turn > ti.u32(2 * TURN) or turn_too > ti.u32(2 * TURN):
+    for slot in range(slots):
+        i = crew.task(slot, rows.shape[0], queue, host)
+        if i < rows.shape[0]:
+            weight = rows[i, 3]
+            for run in range(runs):
+                k = rows[i, 0] * runs + run
+                if level[k] >= SHADE:
+                    upper, lower = rows[i, 1] * runs + run, rows[i, 2] * runs + run
+                    not_upper, not_lower, lost = 0, 0, 0
+                    for x in range(run * RUN, ti.min(width, run * RUN + RUN)):
+                        bit = 1 << (x - run * RUN)
+                        at = rows[i, 0] * width + x
+                        over, under = rows[i, 1] * width + x, rows[i, 2] * width + x
+                        t = triangle(vis, at)
+                        a, b = picture[over], picture[under]
+                        bent, bent_too = edge[over], edge[under]
+                        above, below = t == triangle(vis, over), t == triangle(vis, under)
+                        if not above:
+                            not_upper |= bit
+                        if not below:
+                            not_lower |= bit
+                        picture[at] = b
+                        edge[at] = bent_too
+                        if above:
+                            picture[at] = mixed(a, b, weight) if below else a
+                            edge[at] = mixed(bent, bent_too, weight) if below else bent
+                        if above and below:
+                            apart = (a >> 24) - (b >> 24) + ti.u32(ABRUPT) > ti.u32(2 * ABRUPT)
+                            turn = (bent & ti.u32(255)) - (bent_too & ti.u32(255)) + ti.u32(TURN)
+                            turn_too = (
+                                (bent >> 8 & ti.u32(255)) - (bent_too >> 8 & ti.u32(255)) + ti.u32(TURN)
+                            )
+                            if apart or turn > ti.u32(2 * TURN) or turn_too > ti.u32(2 * TURN):
+                                lost |= bit
+                        elif not (below if weight > 128 else above):
                             lost |= bit
-                    elif not (below if weight > 128 else above):
-                        lost |= bit
-                left[k] = lost
-                value = 0
-                if lost == 0:
-                    if not_upper == 0:
-                        value = solid[upper]
-                    elif not_lower == 0:
-                        value = solid[lower]
-                solid[k] = value
+                    left[k] = lost
+                    value = 0
+                    if lost == 0:
+                        if not_upper == 0:
+                            value = solid[upper]
+                        elif not_lower == 0:
+                            value = solid[lower]
+                    solid[k] = value

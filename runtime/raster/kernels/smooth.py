@@ -11,6 +11,7 @@ and gives the same bytes.
 
 import taichi as ti
 
+from . import crew
 from .gather import LANES, I, V, fv, iv
 from .geometry import f1, greater, i1, lesser, u8s, u32s
 from .paint import RUN as BLOCK
@@ -198,24 +199,29 @@ def smooth_rows(
     views: ti.i32,
     width: ti.i32,
     height: ti.i32,
+    queue: i1,
+    slots: ti.i32,
+    host: ti.template(),
 ):
     """Final bytes of the picture, smoothed where something ends."""
-    for line in range(views * height):
-        y = line % height
-        blocks = (width + BLOCK - 1) // BLOCK
-        for b in range(blocks):
-            if level[line * blocks + b] < SMOOTH:
-                continue
-            bits = near_marks(line, y, b, blocks, height, marks)
-            for x in range(b * BLOCK, ti.min(width, b * BLOCK + BLOCK)):
-                at = line * width + x
-                c = src[at]
-                if bits & 1:
-                    c = smoothed(x, y, at, width, height, src, linear, table)
-                bits >>= 1
-                final[3 * at] = ti.cast(c & 0xFF, ti.u8)
-                final[3 * at + 1] = ti.cast((c >> 8) & 0xFF, ti.u8)
-                final[3 * at + 2] = ti.cast((c >> 16) & 0xFF, ti.u8)
+    for slot in range(slots):
+        line = crew.task(slot, views * height, queue, host)
+        if line < views * height:
+            y = line % height
+            blocks = (width + BLOCK - 1) // BLOCK
+            for b in range(blocks):
+                if level[line * blocks + b] < SMOOTH:
+                    continue
+                bits = near_marks(line, y, b, blocks, height, marks)
+                for x in range(b * BLOCK, ti.min(width, b * BLOCK + BLOCK)):
+                    at = line * width + x
+                    c = src[at]
+                    if bits & 1:
+                        c = smoothed(x, y, at, width, height, src, linear, table)
+                    bits >>= 1
+                    final[3 * at] = ti.cast(c & 0xFF, ti.u8)
+                    final[3 * at + 1] = ti.cast((c >> 8) & 0xFF, ti.u8)
+                    final[3 * at + 2] = ti.cast((c >> 16) & 0xFF, ti.u8)
 
 
 @ti.func
@@ -288,6 +294,8 @@ def smooth_runs(
     views: ti.i32,
     width: ti.i32,
     height: ti.i32,
+    queue: i1,
+    slots: ti.i32,
     workers: ti.i32,
 ):
     """As smooth_rows, for widths that LANES divides.
@@ -295,15 +303,15 @@ def smooth_runs(
     row, quarter: the memory of ``src``; third: that of ``final``; scratch, bits_of, found: SCRATCH vectors of
     each worker, the same memory
     """
-    ti.loop_config(block_dim=1)
-    for worker in range(workers):
+    for slot in range(slots):
         bit = I(0)
         for k in ti.static(range(LANES)):
             bit[k] = 1 << k
-        own = SCRATCH * worker
+        own = SCRATCH * (slot // (slots // workers))
         runs = width // LANES
         last = views * height * width - 1
-        for line in range(worker * views * height // workers, (worker + 1) * views * height // workers):
+        line = crew.task(slot, views * height, queue, True)
+        if line < views * height:
             y = line % height
             for b in range(runs):
                 k = line * runs + b

@@ -9,6 +9,7 @@ Same arithmetic as ``geometry.fill``, operation by operation: same buffers to th
 
 import taichi as ti
 
+from . import crew
 from .gather import BUNDLE, CORNERS, EVEN, LANE_BITS, LANES, TAGS, I, V, fv, iv
 from .geometry import f1, greater, i1, i2, lesser, u32s, u64s
 
@@ -53,6 +54,8 @@ def paint(
     width: ti.i32,
     height: ti.i32,
     rows: ti.i32,
+    queue: i1,
+    slots: ti.i32,
     workers: ti.i32,
 ):
     """Fill the visibility buffers from what :func:`gather` found, ``rows`` rows of a view at a time.
@@ -63,17 +66,17 @@ def paint(
     the ``empty`` [views] set of that number, and note the groups they touch, or with nothing where it is -1
     even: whether LANES divides the width; then ``vis`` is written, else ``vis_one``, the same memory
     """
-    ti.loop_config(block_dim=1)
-    for worker in range(workers):
+    for slot in range(slots):
+        worker = slot // (slots // workers)
         lanes = V(0.0)
         for k in ti.static(range(LANES)):
             lanes[k] = float(k)
         groups = (width + LANES - 1) // LANES
         limit = ti.cast(width, ti.f32)
         bands = (height + rows - 1) // rows
-        task = worker
         own = worker * rows * groups
-        while task < views * bands:
+        task = crew.task(slot, views * bands, queue, True)
+        if task < views * bands:
             n = task // bands
             y_from = (task % bands) * rows
             y_to = ti.min(height, y_from + rows)
@@ -185,4 +188,3 @@ def paint(
                         vis_one[base + x] = (ti.cast(bit[start + x], ti.u64) << 32) | ti.cast(
                             one[start + x], ti.u64
                         )
-            task += workers

@@ -10,6 +10,7 @@ key light, so that whoever stands in it throws the shadow that is there already.
 
 import taichi as ti
 
+from . import crew
 from .ambient import lift_of, rise_of
 from .chart import DARK, LIT, MIXED, SHADOW_SHIFT, cell_at, kind_along
 from .geometry import bounded, f1, f2, i1, i2, nearness, part3, row3, triangle, u8s, u32s, u64s, vec3
@@ -98,93 +99,102 @@ def lay_sun(
     left: i1,
     width: ti.i32,
     height: ti.i32,
+    queue: i1,
+    slots: ti.i32,
+    host: ti.template(),
 ):
     """Lighten ``picture`` where the sun falls on the set. sun: how much, for red, green and blue
 
     lines: the rows to work on; sparse: whether only the pixels that ``left`` says (as in shading)
     """
-    for j in range(lines.shape[0]):
-        line = lines[j]
-        n = line // height
-        y = line % height
-        m = moment[n]
-        eye = part3(view, n, 0)
-        step = part3(view, n, 3) / view[n, 12]
-        first = (
-            part3(view, n, 9)
-            + part3(view, n, 6) * ((view[n, 15] - (y + 0.5)) / view[n, 13])
-            + step * (0.5 - view[n, 14])
-        )
-        texel, set_texel = 1.0 / frame[m, 2], 1.0 / set_frame[0, 2]
-        towards = vec3(light[0], light[1], light[2])
-        warm = vec3(sun[0], sun[1], sun[2])
-        runs = (width + RUN - 1) // RUN
-        last, side_t = -1, 1
-        of_all = DARK  # kind of the last triangle, as it is seen
-        off, set_off, gain = vec3(0), vec3(0), vec3(0)
-        for run in range(runs):
-            filled = solid[line * runs + run]  # by a triangle of the set alone
-            todo = left[line * runs + run] if sparse == 1 else EVERY
-            some = level[line * runs + run] >= SHADE and todo != 0 and filled >= 0
-            if some and filled > 0:
-                some = whole[filled - 1] != DARK
-            x = run * RUN
-            limit = ti.min(x + RUN, width) if some else x
-            while x < limit:
-                at = line * width + x
-                t = triangle(vis, at)
-                stop = limit if filled > 0 else x + 1
-                while stop < limit and triangle(vis, at + stop - x) == t:
-                    stop += 1
-                if t != last:
-                    last = t
-                    of_all = DARK
-                    if 0 <= t < static_faces:
-                        of_all = ti.cast(whole[t], ti.i32)
+    for slot in range(slots):
+        j = crew.task(slot, lines.shape[0], queue, host)
+        if j < lines.shape[0]:
+            line = lines[j]
+            n = line // height
+            y = line % height
+            m = moment[n]
+            eye = part3(view, n, 0)
+            step = part3(view, n, 3) / view[n, 12]
+            first = (
+                part3(view, n, 9)
+                + part3(view, n, 6) * ((view[n, 15] - (y + 0.5)) / view[n, 13])
+                + step * (0.5 - view[n, 14])
+            )
+            texel, set_texel = 1.0 / frame[m, 2], 1.0 / set_frame[0, 2]
+            towards = vec3(light[0], light[1], light[2])
+            warm = vec3(sun[0], sun[1], sun[2])
+            runs = (width + RUN - 1) // RUN
+            last, side_t = -1, 1
+            of_all = DARK  # kind of the last triangle, as it is seen
+            off, set_off, gain = vec3(0), vec3(0), vec3(0)
+            for run in range(runs):
+                filled = solid[line * runs + run]  # by a triangle of the set alone
+                todo = left[line * runs + run] if sparse == 1 else EVERY
+                some = level[line * runs + run] >= SHADE and todo != 0 and filled >= 0
+                if some and filled > 0:
+                    some = whole[filled - 1] != DARK
+                x = run * RUN
+                limit = ti.min(x + RUN, width) if some else x
+                while x < limit:
+                    at = line * width + x
+                    t = triangle(vis, at)
+                    stop = limit if filled > 0 else x + 1
+                    while stop < limit and triangle(vis, at + stop - x) == t:
+                        stop += 1
+                    if t != last:
+                        last = t
+                        of_all = DARK
+                        if 0 <= t < static_faces:
+                            of_all = ti.cast(whole[t], ti.i32)
+                        if of_all != DARK:
+                            row = 2 * t * SHEET
+                            plane = vec3(sheet[row + 12], sheet[row + 13], sheet[row + 14])
+                            nn = vec3(sheet[row], sheet[row + 1], sheet[row + 2])
+                            if plane.dot(eye) < sheet[row + 15]:
+                                nn = -nn
+                            facing = nn.dot(towards)
+                            if facing > GRAZING:
+                                side_t = side[t]
+                                n_l = across(basis, nn)
+                                off = n_l * lift_of(texel) + vec3(0, 0, rise_of(texel))
+                                set_off = n_l * lift_of(set_texel) + vec3(0, 0, rise_of(set_texel))
+                                gain = warm * bounded(0.3 + 0.8 * facing, 0.0, 1.0)
+                            else:
+                                of_all = DARK
                     if of_all != DARK:
-                        row = 2 * t * SHEET
-                        plane = vec3(sheet[row + 12], sheet[row + 13], sheet[row + 14])
-                        nn = vec3(sheet[row], sheet[row + 1], sheet[row + 2])
-                        if plane.dot(eye) < sheet[row + 15]:
-                            nn = -nn
-                        facing = nn.dot(towards)
-                        if facing > GRAZING:
-                            side_t = side[t]
-                            n_l = across(basis, nn)
-                            off = n_l * lift_of(texel) + vec3(0, 0, rise_of(texel))
-                            set_off = n_l * lift_of(set_texel) + vec3(0, 0, rise_of(set_texel))
-                            gain = warm * bounded(0.3 + 0.8 * facing, 0.0, 1.0)
-                        else:
-                            of_all = DARK
-                if of_all != DARK:
-                    kind = of_all
-                    p = eye + (first + step * ti.cast(x, ti.f32)) / nearness(vis, at)
-                    end = eye + (first + step * ti.cast(stop - 1, ti.f32)) / nearness(vis, at + stop - 1 - x)
-                    celled = kind == MIXED and side_t > 1
-                    if celled:
-                        cell, cell_end = cell_at(t, p, plot, side_t), cell_at(t, end, plot, side_t)
-                        kind = kind_along(t, p, end, cell, cell_end, plot, begin, side_t, chart)
-                    if kind != DARK:
-                        clear = free_between(
-                            across(basis, p) + off, across(basis, end) + off, m, frame, size, coarse
+                        kind = of_all
+                        p = eye + (first + step * ti.cast(x, ti.f32)) / nearness(vis, at)
+                        end = eye + (first + step * ti.cast(stop - 1, ti.f32)) / nearness(
+                            vis, at + stop - 1 - x
                         )
-                        for xx in range(x, stop):
-                            i = at + xx - x
-                            amount = ti.cast((todo >> (xx % RUN)) & 1, ti.f32)
-                            if amount > 0 and not (clear and kind == LIT):
-                                p = eye + (first + step * ti.cast(xx, ti.f32)) / nearness(vis, i)
-                                here = kind
-                                if kind == MIXED and celled:
-                                    cell = cell_at(t, p, plot, side_t)
-                                    here = ti.cast(chart[begin[t] + cell[1] * side_t + cell[0]], ti.i32)
-                                q = across(basis, p)
-                                if here == DARK:
-                                    amount = 0.0
-                                elif here == MIXED:
-                                    amount = lit(q + set_off, 0, set_frame, set_size, set_depth, set_coarse)
-                                if amount > 0 and not clear:
-                                    amount *= lit(q + off, m, frame, size, depth_map, coarse)
-                            if amount > 0:
-                                color = decode(picture[i], linear)
-                                picture[i] = encode(color + color * gain * amount * (1.2 - color), table)
-                x = stop
+                        celled = kind == MIXED and side_t > 1
+                        if celled:
+                            cell, cell_end = cell_at(t, p, plot, side_t), cell_at(t, end, plot, side_t)
+                            kind = kind_along(t, p, end, cell, cell_end, plot, begin, side_t, chart)
+                        if kind != DARK:
+                            clear = free_between(
+                                across(basis, p) + off, across(basis, end) + off, m, frame, size, coarse
+                            )
+                            for xx in range(x, stop):
+                                i = at + xx - x
+                                amount = ti.cast((todo >> (xx % RUN)) & 1, ti.f32)
+                                if amount > 0 and not (clear and kind == LIT):
+                                    p = eye + (first + step * ti.cast(xx, ti.f32)) / nearness(vis, i)
+                                    here = kind
+                                    if kind == MIXED and celled:
+                                        cell = cell_at(t, p, plot, side_t)
+                                        here = ti.cast(chart[begin[t] + cell[1] * side_t + cell[0]], ti.i32)
+                                    q = across(basis, p)
+                                    if here == DARK:
+                                        amount = 0.0
+                                    elif here == MIXED:
+                                        amount = lit(
+                                            q + set_off, 0, set_frame, set_size, set_depth, set_coarse
+                                        )
+                                    if amount > 0 and not clear:
+                                        amount *= lit(q + off, m, frame, size, depth_map, coarse)
+                                if amount > 0:
+                                    color = decode(picture[i], linear)
+                                    picture[i] = encode(color + color * gain * amount * (1.2 - color), table)
+                    x = stop

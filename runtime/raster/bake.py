@@ -79,16 +79,20 @@ def density_volume(mesh: Mesh, casters: NDArray[np.int32]) -> Volume:
     low, high = low - margin, high + margin
     cell = max(CELL, float((np.prod(high - low) / CELLS) ** (1 / 3)))
     shape = np.ceil((high - low) / cell).astype(int) + 2
-    points, areas = _surface_points(corners, cell * 0.7)
+    inside = ((corners.max(axis=1) > low) & (corners.min(axis=1) < high)).all(axis=1)
+    points, areas = _surface_points(corners[inside], cell * 0.7)
     within = ((points > low) & (points < high)).all(axis=1)
     points, areas = points[within], areas[within]
     where = (points - low) / cell
     base = np.floor(where).astype(np.int64)
     part = where - base
+    weights = [(1 - part[:, a], part[:, a]) for a in range(3)]
+    strides = (int(shape[1] * shape[2]), int(shape[2]), 1)
+    first = base @ np.array(strides)
     values = np.zeros(int(np.prod(shape)))
-    for corner in np.ndindex(2, 2, 2):
-        share = np.prod(np.where(np.array(corner) == 1, part, 1 - part), axis=1)
-        index = np.ravel_multi_index(tuple((base + corner).T), tuple(shape))
+    for i, j, k in np.ndindex(2, 2, 2):
+        share = weights[0][i] * weights[1][j] * weights[2][k]
+        index = first + (i * strides[0] + j * strides[1] + k)
         values += np.bincount(index, weights=share * areas, minlength=len(values))
     return Volume((values.reshape(shape) / cell**3).astype(np.float32), low, cell)
 
@@ -111,7 +115,7 @@ def _surface_points(
     area = np.linalg.norm(np.cross(u, v), axis=1) / 2
     longest = np.linalg.norm(np.stack([u, v, u - v]), axis=2).max(axis=0)
     steps = np.clip(np.ceil(longest / spacing), 1, 400).astype(int)
-    points, areas = [], []
+    points, areas = [np.zeros((0, 3))], [np.zeros(0)]
     for n in np.unique(steps):
         chosen = steps == n
         # centres of the n^2 small triangles

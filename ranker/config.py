@@ -19,7 +19,7 @@ class ModelConfig:
     """Shape of the network, and the words its class heads know, in the order of their outputs.
 
     frames, size: pictures of a shot and their side in pixels, at inference
-    contrast: length of the vectors of L_q
+    contrast: length of the vectors of L_q; motion: of what is made of the picture's motion, 0 for none
     """
 
     movements: tuple[str, ...]
@@ -29,6 +29,7 @@ class ModelConfig:
     frames: int = 8
     size: int = 224
     contrast: int = 128
+    motion: int = 0
 
 
 @dataclass(frozen=True)
@@ -50,8 +51,10 @@ class Phase:
 class TrainConfig:
     """How to train. The learning rate warms up over ``warmup`` of all steps and falls on a half cosine.
 
-    contrast_weight, class_weight: factors of L_q and L_c (0 leaves the loss out)
+    contrast_weight, class_weight, hint_weight: factors of L_q, L_c and L_h (0 leaves the loss out)
     dictionary, momentum, temperature: K, the momentum encoder's m and τ of L_q
+    motion: as in :class:`ModelConfig`; unmoved: share of the clips whose motion is kept from the heads, since
+        a glance at a shot does not have it
     smoothing: label smoothing; held_out: share of the clips, by whole groups, kept for evaluation
     calibration: batches over which batch-norm statistics are taken anew at full size at the end
     autocast: compute in bfloat16 where the network allows; augment: mirror, and vary the light
@@ -66,10 +69,13 @@ class TrainConfig:
     warmup: float = 0.1
     class_weight: float = 1.0
     contrast_weight: float = 1.0
+    hint_weight: float = 0.0
     dictionary: int = 6553
     momentum: float = 0.999
     temperature: float = 0.07
     smoothing: float = 0.0
+    motion: int = 128
+    unmoved: float = 0.3
     held_out: float = 0.15
     calibration: int = 40
     autocast: bool = True
@@ -84,12 +90,14 @@ class TrainConfig:
 PAPER = TrainConfig(phases=(Phase(epochs=60, size=224, batch=128),))
 CPU = TrainConfig(
     phases=(
-        Phase(epochs=7, size=96, frames=3, key_frames=1, batch=32),
-        Phase(epochs=2, size=128, frames=3, key_frames=1, batch=32),
-        Phase(epochs=1, size=160, frames=2, key_frames=1, batch=32),
+        Phase(epochs=8, size=64, frames=3, key_frames=1, batch=32),
+        Phase(epochs=4, size=96, frames=3, key_frames=1, batch=32),
+        Phase(epochs=1, size=128, frames=3, key_frames=1, batch=32),
+        Phase(epochs=1, size=192, frames=2, key_frames=1, batch=32),
     ),
     momentum=0.99,
     contrast_weight=0.25,
+    hint_weight=1.0,
     smoothing=0.05,
 )
 RECIPES = {"paper": PAPER, "cpu": CPU}
@@ -122,12 +130,18 @@ def model_from_json(values: dict[str, Any]) -> ModelConfig:
     try:
         words = {k: tuple(str(w) for w in values[k]) for k in ("movements", "scales", "angles")}
         rest = {k: int(values[k]) for k in ("frames", "size", "contrast")}
+        rest["motion"] = int(values.get("motion", 0))
         config = ModelConfig(**words, backbone=str(values["backbone"]), **rest)  # type: ignore[arg-type]
     except (KeyError, TypeError, ValueError) as error:
         raise RankerError(f"the ranker's config is not understood: {error!r}") from error
     if config.backbone not in BACKBONES or not all((config.movements, config.scales, config.angles)):
         raise RankerError("the ranker's config is not understood: unknown backbone or no classes")
-    if not (1 <= config.frames <= 64 and 16 <= config.size <= 1024 and 1 <= config.contrast <= 4096):
+    if not (
+        1 <= config.frames <= 64
+        and 16 <= config.size <= 1024
+        and 1 <= config.contrast <= 4096
+        and 0 <= config.motion <= 4096
+    ):
         raise RankerError("the ranker's config is not understood: sizes out of range")
     return config
 

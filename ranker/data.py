@@ -10,7 +10,7 @@ from __future__ import annotations
 import hashlib
 import json
 import os
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass, field
 from functools import cached_property
 from pathlib import Path
@@ -25,6 +25,8 @@ from .errors import RankerError
 
 SCHEMA = "vds.dataset/1"
 SHARD = 64
+#: Hints of such names change their sign in a mirrored picture.
+MIRRORED = "right"
 
 
 @dataclass(frozen=True)
@@ -203,6 +205,11 @@ class Dataset:
         how = cv2.INTER_AREA if size < chosen.shape[1] else cv2.INTER_LINEAR
         return np.stack([cv2.resize(f, (size, size), interpolation=how) for f in chosen]).astype(np.uint8)
 
+    def shards(self) -> Iterator[tuple[Path, NDArray[np.uint8]]]:
+        """The files of the frames in order, and what is in each: uint8 [n, T, H, W, 3]."""
+        for path, array in zip(_shards(self.folder), self._arrays, strict=True):
+            yield path.with_suffix(".npy"), array
+
     @cached_property
     def classes(self) -> NDArray[np.int64]:
         """int64 [N, 3]: indices of movement, scale and angle, −1 where not known."""
@@ -212,6 +219,22 @@ class Dataset:
             [k.get(w, -1) if w is not None else -1 for w, k in zip(row, known, strict=True)] for row in rows
         ]
         return np.array(table, np.int64).reshape(-1, 3)
+
+    @cached_property
+    def hints(self) -> tuple[tuple[str, ...], NDArray[np.float32]]:
+        """What whoever made the set knows of its clips in numbers (``hints`` of a label's ``about``): their
+        names, and float32 [N, K], scaled to mean 0 and deviation 1 each, within 3; NaN where not known.
+        """
+        told = [label.about.get("hints") or {} for label in self.labels]
+        names = tuple(sorted({name for hints in told for name in hints}))
+        table = np.array([[hints.get(n, np.nan) for n in names] for hints in told], np.float64)
+        table = table.reshape(len(told), len(names))
+        if not table.size:
+            return (), np.zeros((len(told), 0), np.float32)
+        middle = np.nanmean(table, 0)
+        middle[[name.startswith(MIRRORED) for name in names]] = 0.0  # so that a mirrored one is the negative
+        spread = np.sqrt(np.nanmean((table - middle) ** 2, 0))
+        return names, np.clip((table - middle) / np.maximum(spread, 1e-6), -3, 3).astype(np.float32)
 
     @cached_property
     def professional(self) -> NDArray[np.float32]:

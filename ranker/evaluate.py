@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from .data import Dataset
 from .infer import Ranker, Scores
 from .model import ShotRanker, frame_times, normalised
+from .motion import motion
 
 #: Upper ends of the strengths that negatives are reported by.
 STRENGTHS = (0.25, 0.5, 0.75, 1.0)
@@ -73,7 +74,9 @@ def agreement_with_fp32(
         frames = _frames(ranker, data, np.array([clip]))
         quick.append(float(ranker.score(frames).margin[0]))
         with torch.inference_mode():
-            exact.append(float(model(normalised(torch.from_numpy(frames).to(device)), times).logit[0]))
+            pictures = torch.from_numpy(frames).to(device)
+            moved = motion(pictures) if model.config.motion else None
+            exact.append(float(model(normalised(pictures), times, moved).logit[0]))
     return spearman(np.array(exact), np.array(quick))
 
 

@@ -25,6 +25,7 @@ from .engine import has_vnni
 from .errors import RankerError
 from .int8 import Int8Backbone, Ranges
 from .model import Output, ShotRanker, frame_times, normalised
+from .motion import motion
 from .weights import load_model, load_ranges
 
 #: Shots in a batch. On a CPU more are hardly quicker, and bfloat16 convolutions round differently at
@@ -130,7 +131,8 @@ class Ranker:
         count = len(frames)
         features = self._encoded(frames.reshape(-1, *frames.shape[2:]))
         features = features.view(count, self.config.frames, self._model.width)
-        return _scores(self._model.judge(features, self._times.expand(count, -1)))
+        moved = motion(torch.from_numpy(frames).to(self.device)) if self.config.motion else None
+        return _scores(self._model.judge(features, self._times.expand(count, -1), moved))
 
     def _eight(self, folded: nn.Module, ranges: Ranges | None) -> Encoder | None:
         """The frame encoder in eight bits, None where that cannot be or would not be quicker."""

@@ -1,4 +1,4 @@
-"""The three losses of the paper's section 3.3: L = L_b + L_c + L_q."""
+"""The losses: L = L_b + L_c + L_q of the paper's section 3.3, and L_h, of what is known in numbers."""
 
 from __future__ import annotations
 
@@ -48,3 +48,14 @@ def contrast_loss(
         negative = negative.masked_fill(same, float("-inf"))
     scores = torch.cat([positive, negative], 1) / temperature
     return functional.cross_entropy(scores, torch.zeros(len(query), dtype=torch.long, device=query.device))
+
+
+def hint_loss(told: Tensor, hints: Tensor) -> Tensor:
+    """L_h: how far what is told of shots is from what is known of them, [B, K] both.
+
+    Smooth L1 (Girshick 2015); NaN is not known, and with nothing known it is 0
+    """
+    known = hints.isfinite()
+    if not known.any():
+        return told.new_zeros(())
+    return functional.smooth_l1_loss(told[known], hints[known])

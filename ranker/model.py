@@ -2,7 +2,8 @@
 
 Every frame goes through the same ResNet; what comes out is fused over time at the end (paper,
 section 3.3). The fusion is TSN's average consensus and, beside it, the slope and the spread of the
-features over time: an average alone cannot tell a pan to the left from one to the right.
+features over time: an average alone cannot tell a pan to the left from one to the right. What single frames
+do not show, how the picture moves as a whole, comes in as numbers (:mod:`ranker.motion`).
 """
 
 from __future__ import annotations
@@ -14,6 +15,7 @@ from torch import Tensor, nn
 from torch.nn import functional
 
 from .config import ModelConfig
+from .motion import NUMBERS, pairs
 from .vision import torchvision_models
 
 #: Of sRGB in 0..1, by channel, as ResNets are used to.
@@ -25,7 +27,7 @@ class Output(NamedTuple):
     """What the network says of B shots.
 
     logit [B], of p_b; movement, scale, angle [B, classes], logits of p_c; feature [B, D], the average
-    of the frames' features; contrast [B, C], unit vectors z of L_q
+    of the frames' features; contrast [B, C], unit vectors z of L_q; fused [B, 3 D], what the heads see
     """
 
     logit: Tensor
@@ -34,6 +36,7 @@ class Output(NamedTuple):
     angle: Tensor
     feature: Tensor
     contrast: Tensor
+    fused: Tensor
 
 
 class ShotRanker(nn.Module):
@@ -52,26 +55,43 @@ class ShotRanker(nn.Module):
         self.scale = nn.Linear(3 * width, len(config.scales))
         self.angle = nn.Linear(3 * width, len(config.angles))
         self.contrast = nn.Sequential(nn.Linear(width, 256), nn.ReLU(), nn.Linear(256, config.contrast))
+        self.motion: nn.Module | None = None
+        if config.motion:
+            numbers = NUMBERS * len(pairs(config.frames))
+            hidden = nn.Sequential(nn.Linear(numbers, 256), nn.ReLU(), nn.Dropout(0.35))
+            self.motion = nn.Sequential(*hidden, nn.Linear(256, config.motion), nn.ReLU(), nn.Dropout(0.35))
+            self.professional_moved = nn.Linear(config.motion, 1, bias=False)
+            self.movement_moved = nn.Linear(config.motion, len(config.movements), bias=False)
 
-    def forward(self, frames: Tensor, times: Tensor) -> Output:
-        """Judge shots: ``frames`` [B, T, 3, H, W] as :func:`normalised`, ``times`` [B, T] in 0..1."""
+    def forward(self, frames: Tensor, times: Tensor, moved: Tensor | None = None) -> Output:
+        """Judge shots: ``frames`` [B, T, 3, H, W] as :func:`normalised`, ``times`` [B, T] in 0..1.
+
+        moved: their motion [B, pairs, NUMBERS]; NaN, or None for all, where that is not known
+        """
         batch, count = frames.shape[:2]
         flat = frames.flatten(0, 1).contiguous(memory_format=torch.channels_last)
         features = self.backbone(flat).float().view(batch, count, self.width)
-        return self.judge(features, times)
+        return self.judge(features, times, moved)
 
-    def judge(self, features: Tensor, times: Tensor) -> Output:
+    def judge(self, features: Tensor, times: Tensor, moved: Tensor | None = None) -> Output:
         """The heads over features of single frames [B, T, D], in float32."""
         with torch.autocast(features.device.type, enabled=False):
             average = features.mean(1)
             fused = fuse(features, times)
+            professional, movement = self.professional(fused), self.movement(fused)
+            if self.motion is not None and moved is not None:
+                known = moved.isfinite().flatten(1).all(1, keepdim=True)
+                seen = self.motion(moved.nan_to_num().flatten(1)) * known
+                professional = professional + self.professional_moved(seen)
+                movement = movement + self.movement_moved(seen)
             return Output(
-                self.professional(fused).squeeze(1),
-                self.movement(fused),
+                professional.squeeze(1),
+                movement,
                 self.scale(fused),
                 self.angle(fused),
                 average,
                 functional.normalize(self.contrast(average), dim=1),
+                fused,
             )
 
 

@@ -25,14 +25,15 @@ from torch import Tensor, nn
 
 from .config import PAPER, ModelConfig, Phase, TrainConfig, to_json
 from .curves import draw_curves
-from .data import Dataset
+from .data import MIRRORED, Dataset
 from .dictionary import Dictionary, follow, momentum_copy
 from .errors import RankerError
 from .evaluate import agreement_with_fp32, evaluate, mean
 from .infer import Ranker, fold_batch_norm
 from .int8 import Ranges, measured_ranges
-from .losses import binary_loss, class_loss, contrast_loss
+from .losses import binary_loss, class_loss, contrast_loss, hint_loss
 from .model import ShotRanker, frame_times, normalised
+from .motion import mirrored, motions
 from .weights import load_model, save_weights
 
 #: Clips by which eight bits are fitted, and by which they are compared with float32.
@@ -49,6 +50,8 @@ class Batch(NamedTuple):
     key_times: Tensor
     professional: Tensor
     classes: Tensor
+    hints: Tensor
+    moved: Tensor | None
     clips: Tensor
 
 
@@ -76,32 +79,50 @@ def train(
     # The network, the encoder of the keys that follows it, and the dictionary of keys.
     words = data.words
     shape = ModelConfig(
-        words.movements, words.scales, words.angles, config.backbone, data.frames, config.size
+        words.movements,
+        words.scales,
+        words.angles,
+        config.backbone,
+        data.frames,
+        config.size,
+        motion=config.motion,
     )
+    moved = torch.from_numpy(motions(data)) if config.motion else None
     model = ShotRanker(shape).to(device)
     model.to(memory_format=torch.channels_last)  # type: ignore[call-overload]
     keys = momentum_copy(model)
     dictionary = Dictionary(config.dictionary, shape.contrast, config.seed).to(device)
-    optimizer = _optimizer(model, config)
+    # What reads hints off the features helps the network to learn, and is not kept.
+    reader = nn.Linear(3 * model.width, max(1, len(data.hints[0]))).to(device)
+    optimizer = _optimizer(model, reader, config)
 
     # Where an earlier run stopped.
     schedule = [phase for phase in config.phases for _ in range(phase.epochs)]
     lengths = [math.ceil(len(learn) / phase.batch) for phase in schedule]
     state = out / "checkpoint.pt"
-    done, step = _resume(state, config, model, keys, dictionary, optimizer)
+    learning = {
+        "model": model,
+        "keys": keys,
+        "dictionary": dictionary,
+        "reader": reader,
+        "optimizer": optimizer,
+    }
+    done, step = _resume(state, config, learning)
     start = time.monotonic()
 
     with (out / "log.jsonl").open("a", encoding="utf-8") as log:
         for epoch in range(done, len(schedule)):
             phase = schedule[epoch]
+            torch.manual_seed(config.seed + 1 + epoch)  # what is dropped out hangs on the epoch alone
             model.train()
-            sums = np.zeros(4)
-            for batch in _batches(data, learn, phase, config, epoch):
+            sums = np.zeros(5)
+            for batch in _batches(data, learn, phase, config, epoch, moved):
                 for group in optimizer.param_groups:
                     group["lr"] = learning_rate(config, step, sum(lengths))
 
-                parts = _losses(model, keys, dictionary, batch, config, device)
+                parts = _losses(model, keys, dictionary, reader, batch, config, device)
                 loss = parts[0] + config.class_weight * parts[1] + config.contrast_weight * parts[2]
+                loss = loss + config.hint_weight * parts[3]
                 optimizer.zero_grad(set_to_none=True)
                 loss.backward()
                 nn.utils.clip_grad_norm_(model.parameters(), 5.0)
@@ -111,7 +132,7 @@ def train(
                 step += 1
                 sums += [float(loss.detach()), *(float(p.detach()) for p in parts)]
 
-            names = ("loss", "binary", "class", "contrast")
+            names = ("loss", "binary", "class", "contrast", "hint")
             line: dict[str, Any] = {
                 "epoch": epoch + 1,
                 "epochs": len(schedule),
@@ -119,11 +140,11 @@ def train(
                 "step": step,
             }
             line |= {n: round(float(v) / lengths[epoch], 5) for n, v in zip(names, sums, strict=True)}
-            line["held_out"] = watch(model, data, held, phase.size, config, device)
+            line["held_out"] = watch(model, data, held, phase.size, config, device, moved)
             line |= {"steps": sum(lengths), "seconds": round(time.monotonic() - start, 1)}
             _tell(log, line, report)
             draw_curves(out)
-            _keep(state, config, model, keys, dictionary, optimizer, epoch + 1, step)
+            _keep(state, config, learning, epoch + 1, step)
 
         # Small pictures leave batch norm with the wrong statistics for full ones.
         calibrate(model, data, learn, config, device)
@@ -172,6 +193,7 @@ def watch(
     size: int,
     config: TrainConfig,
     device: torch.device,
+    moved: Tensor | None = None,
 ) -> dict[str, float | None]:
     """Shares of some of the held-out clips that are judged rightly, at a picture size: for the curves."""
     some = np.random.default_rng(config.seed).permutation(held)[: config.watched]
@@ -180,9 +202,9 @@ def watch(
     was = model.training
     model.eval()
     right: list[NDArray[np.float64]] = []
-    for batch in _batches(data, some, phase, plain, epoch=-1) if len(some) else ():
+    for batch in _batches(data, some, phase, plain, -1, moved) if len(some) else ():
         with torch.autocast(device.type, torch.bfloat16, enabled=config.autocast):
-            out = model(normalised(batch.query.to(device)), batch.query_times.to(device))
+            out = model(*_seen(batch, device))
         good, classes = batch.professional.numpy() > 0.5, batch.classes.numpy()
         found = np.stack([p.argmax(1).cpu().numpy() for p in (out.movement, out.scale, out.angle)], 1)
         known = (classes >= 0) & good[:, None]
@@ -217,33 +239,48 @@ def calibrate(
     model.eval()
 
 
+def _seen(batch: Batch, device: torch.device) -> tuple[Tensor, Tensor, Tensor | None]:
+    """What the network sees of a batch."""
+    moved = None if batch.moved is None else batch.moved.to(device)
+    return normalised(batch.query.to(device)), batch.query_times.to(device), moved
+
+
 def _losses(
     model: ShotRanker,
     keys: ShotRanker,
     dictionary: Dictionary,
+    reader: nn.Linear,
     batch: Batch,
     config: TrainConfig,
     device: torch.device,
-) -> tuple[Tensor, Tensor, Tensor]:
-    """L_b, L_c and L_q of a batch; its keys go into the dictionary afterwards."""
+) -> tuple[Tensor, Tensor, Tensor, Tensor]:
+    """L_b, L_c, L_q and L_h of a batch; its keys go into the dictionary afterwards."""
     with torch.autocast(device.type, torch.bfloat16, enabled=config.autocast):
-        out = model(normalised(batch.query.to(device)), batch.query_times.to(device))
+        out = model(*_seen(batch, device))
     binary = binary_loss(out.logit, batch.professional.to(device), config.smoothing)
     labels = tuple(batch.classes.to(device).unbind(1))
     classes = class_loss((out.movement, out.scale, out.angle), labels, config.smoothing)
+    hint = torch.zeros((), device=device)
+    if config.hint_weight and batch.hints.shape[1]:
+        hint = hint_loss(reader(out.fused), batch.hints.to(device))
     if config.contrast_weight == 0:
-        return binary, classes, torch.zeros((), device=device)
+        return binary, classes, torch.zeros((), device=device), hint
     with torch.no_grad(), torch.autocast(device.type, torch.bfloat16, enabled=config.autocast):
         key = keys(normalised(batch.key.to(device)), batch.key_times.to(device)).contrast
     clips = batch.clips.to(device)
     others = dictionary.vectors.clone()
     contrast = contrast_loss(out.contrast, key, others, config.temperature, dictionary.same(clips))
     dictionary.push(key, clips)
-    return binary, classes, contrast
+    return binary, classes, contrast, hint
 
 
 def _batches(
-    data: Dataset, clips: NDArray[np.int64], phase: Phase, config: TrainConfig, epoch: int
+    data: Dataset,
+    clips: NDArray[np.int64],
+    phase: Phase,
+    config: TrainConfig,
+    epoch: int,
+    moved: Tensor | None = None,
 ) -> Iterator[Batch]:
     """The clips in an order that hangs on seed and epoch alone; the next batch is read meanwhile."""
     order = np.random.default_rng((config.seed, epoch + 1)).permutation(clips)
@@ -253,19 +290,24 @@ def _batches(
     ahead = max(2, config.threads)
     with ThreadPoolExecutor(max(1, config.threads // 2)) as readers:
         made = [
-            readers.submit(_batch, data, part, phase, config, (epoch + 1, n))
+            readers.submit(_batch, data, part, phase, config, (epoch + 1, n), moved)
             for n, part in enumerate(parts[:ahead])
         ]
         for n in range(len(parts)):
             batch = made.pop(0).result()
             if n + ahead < len(parts):
                 key = (epoch + 1, n + ahead)
-                made.append(readers.submit(_batch, data, parts[n + ahead], phase, config, key))
+                made.append(readers.submit(_batch, data, parts[n + ahead], phase, config, key, moved))
             yield batch
 
 
 def _batch(
-    data: Dataset, clips: NDArray[np.int64], phase: Phase, config: TrainConfig, key: tuple[int, int]
+    data: Dataset,
+    clips: NDArray[np.int64],
+    phase: Phase,
+    config: TrainConfig,
+    key: tuple[int, int],
+    moved: Tensor | None,
 ) -> Batch:
     rng = np.random.default_rng((config.seed, 1, *key))
     times = frame_times(ModelConfig((), (), (), frames=data.frames)).numpy()
@@ -273,16 +315,24 @@ def _batch(
     count, keyed = phase.frames, phase.key_frames if config.contrast_weight else 0
     if count + keyed > data.frames:
         raise RankerError(f"query and key need {count + keyed} frames, the clips have {data.frames}")
-    classes = data.classes[clips]
+    classes, hints = data.classes[clips], data.hints[1][clips]
+    turned = [name.startswith(MIRRORED) for name in data.hints[0]]
     frames, places = [], []
+    own = None if moved is None else moved[torch.from_numpy(clips)]
     for row, index in enumerate(clips):
         chosen = rng.permutation(data.frames)
         picked = np.concatenate([np.sort(chosen[:count]), np.sort(chosen[count : count + keyed])])
         clip = data.clip(int(index), picked.tolist(), phase.size)
         if config.augment:
             clip, flipped = varied(clip, rng)
-            if flipped and classes[row, 0] >= 0:
-                classes[row, 0] = mirror[classes[row, 0]]
+            if flipped:
+                hints[row, turned] *= -1
+                if own is not None:
+                    own[row] = mirrored(own[row])
+                if classes[row, 0] >= 0:
+                    classes[row, 0] = mirror[classes[row, 0]]
+            if own is not None and rng.random() < config.unmoved:
+                own[row] = torch.nan
         frames.append(clip)
         places.append(times[picked])
     pictures, moments = torch.from_numpy(np.stack(frames)), torch.from_numpy(np.stack(places))
@@ -293,6 +343,8 @@ def _batch(
         moments[:, count:],
         torch.from_numpy(data.professional[clips]),
         torch.from_numpy(classes),
+        torch.from_numpy(hints),
+        own,
         torch.from_numpy(clips),
     )
 
@@ -319,9 +371,10 @@ def mirror_words(words: tuple[str, ...]) -> list[int]:
     return [words.index(m) if m in words else i for i, m in enumerate(mirrored)]
 
 
-def _optimizer(model: ShotRanker, config: TrainConfig) -> torch.optim.Optimizer:
-    decayed = [p for p in model.parameters() if p.ndim > 1]
-    plain = [p for p in model.parameters() if p.ndim <= 1]
+def _optimizer(model: ShotRanker, reader: nn.Linear, config: TrainConfig) -> torch.optim.Optimizer:
+    learnt = [*model.parameters(), *reader.parameters()]
+    decayed = [p for p in learnt if p.ndim > 1]
+    plain = [p for p in learnt if p.ndim <= 1]
     groups = [
         {"params": decayed, "weight_decay": config.weight_decay},
         {"params": plain, "weight_decay": 0.0},
@@ -336,16 +389,12 @@ def _optimizer(model: ShotRanker, config: TrainConfig) -> torch.optim.Optimizer:
 def _keep(
     path: Path,
     config: TrainConfig,
-    model: ShotRanker,
-    keys: ShotRanker,
-    dictionary: Dictionary,
-    optimizer: torch.optim.Optimizer,
+    learning: dict[str, Any],
     epochs: int,
     step: int,
 ) -> None:
     part = path.with_suffix(".part")
-    parts: dict[str, Any] = {"model": model, "keys": keys, "dictionary": dictionary, "optimizer": optimizer}
-    states = {name: value.state_dict() for name, value in parts.items()}
+    states = {name: value.state_dict() for name, value in learning.items()}
     try:
         torch.save({"config": json.dumps(to_json(config)), "epochs": epochs, "step": step, **states}, part)
         os.replace(part, path)
@@ -357,10 +406,7 @@ def _keep(
 def _resume(
     path: Path,
     config: TrainConfig,
-    model: ShotRanker,
-    keys: ShotRanker,
-    dictionary: Dictionary,
-    optimizer: torch.optim.Optimizer,
+    learning: dict[str, Any],
 ) -> tuple[int, int]:
     """Epochs and steps done by an earlier run with the same settings, its state loaded."""
     if not path.exists():
@@ -371,10 +417,8 @@ def _resume(
             raise RankerError(
                 f"{path}: is of a training with other settings; name another folder or remove it"
             )
-        model.load_state_dict(state["model"])
-        keys.load_state_dict(state["keys"])
-        dictionary.load_state_dict(state["dictionary"])
-        optimizer.load_state_dict(state["optimizer"])
+        for name, value in learning.items():
+            value.load_state_dict(state[name])
         return int(state["epochs"]), int(state["step"])
     except RankerError:
         raise

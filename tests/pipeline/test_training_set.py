@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import random
+from dataclasses import fields, replace
 from functools import partial
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from ranker.data import Dataset
+from ranker.data import MIRRORED, Dataset
 from ranker.errors import RankerError
 from vdsl.cinema.track import CameraTrack, look_at_rotation
 from vdsl.lang import Report, Source
@@ -20,12 +21,14 @@ from vdsl.pipeline.casting import Scene, Troupe, split_of_story
 from vdsl.pipeline.clips import Clip, clips_of
 from vdsl.pipeline.dataset import generate
 from vdsl.pipeline.designer import judged, picks
+from vdsl.pipeline.hints import hints_of
 from vdsl.pipeline.labels import WORDS, classes
 from vdsl.pipeline.perturb import mistyped, perturbed
 from vdsl.pipeline.script import check_source
 from vdsl.pipeline.stories import places, random_story, split_of
 from vdsl.propose.cameras import measured_anew
 from vdsl.propose.story import tell
+from vdsl.propose.types import CameraProposal
 
 
 def _track(frames: int = 40) -> CameraTrack:
@@ -205,16 +208,48 @@ def test_a_training_set_is_half_good_and_goes_on_where_it_stopped(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("vdsl.pipeline.dataset.Troupe", partial(Troupe, lines=1, cameras=2))
-    at_once = generate(tmp_path / "a", 1, seed=4, device="cpu", size=64)
-    assert generate(tmp_path / "a", 1, seed=4, device="cpu", size=64) == at_once
+    at_once = generate(tmp_path / "a", 1, seed=4, device="cpu", size=64, processes=1)
+    assert generate(tmp_path / "a", 1, seed=4, device="cpu", size=64, processes=1) == at_once
     data = Dataset(tmp_path / "a")
     assert len(data.labels) == at_once
     good = [label for label in data.labels if label.professional]
     assert len(good) * 2 == at_once
     assert all(label.strength == 0 and label.about["kind"] == "designer" for label in good)
     assert all(label.strength > 0 and label.split for label in data.labels if not label.professional)
+    names, hints = data.hints
+    assert {"thirds_error", "face", "right_panning", "nearness"} <= set(names)
+    assert np.isfinite(hints).all()
     frames = data.clip(0, range(8), 64)
     assert frames.shape == (8, 64, 64, 3)
     assert frames.std() > 10
     with pytest.raises(RankerError, match="another kind"):
-        generate(tmp_path / "a", at_once + 1, seed=5, device="cpu", size=64)
+        generate(tmp_path / "a", at_once + 1, seed=5, device="cpu", size=64, processes=1)
+
+
+@pytest.mark.slow
+def test_several_processes_make_the_set_that_one_makes(tmp_path: Path) -> None:
+    for processes in (1, 2):
+        generate(tmp_path / f"{processes}", 100, seed=3, device="cpu", size=48, processes=processes)
+    one, two = (sorted((tmp_path / f"{n}").iterdir()) for n in (1, 2))
+    assert [path.name for path in one] == [path.name for path in two]
+    for a, b in zip(one, two, strict=True):
+        assert a.read_bytes() == b.read_bytes(), a.name
+
+
+def test_hints_of_a_mirrored_take_are_mirrored() -> None:
+    track = _track()
+    track = replace(track, rotation=track.rotation + np.linspace(0, 1, 40)[:, None] * (0.1, 0.2, 0.3))
+    swap = np.array([1.0, -1.0, 1.0])
+    other = replace(
+        track,
+        position=track.position * swap,
+        look_at=track.look_at * swap,
+        rotation=track.rotation * np.array([-1.0, 1.0, -1.0]),
+    )
+    camera = CameraProposal(**dict.fromkeys((f.name for f in fields(CameraProposal)), None))  # type: ignore[arg-type]
+    here, there = (hints_of(replace(camera, track=t, measures={"jerk": 4.0})) for t in (track, other))
+    assert here["jerk"] == 2.0
+    assert here["right_panning"] == pytest.approx(track.rotation[0, 2] - track.rotation[-1, 2], abs=1e-3)
+    for name, value in here.items():
+        sign = -1 if name.startswith(MIRRORED) else 1
+        assert there[name] == pytest.approx(sign * value, abs=1e-4), name

@@ -10,7 +10,7 @@ import torch
 from ranker_clips import model_config
 
 from ranker.dictionary import Dictionary, follow, momentum_copy
-from ranker.losses import binary_loss, class_loss, contrast_loss
+from ranker.losses import binary_loss, class_loss, contrast_loss, hint_loss
 from ranker.model import ShotRanker, fuse, normalised
 
 
@@ -43,6 +43,13 @@ def test_class_loss_sums_the_three_over_known_labels() -> None:
         want += sum(parts) / len(parts) if parts else 0.0
     got = class_loss(tuple(map(torch.tensor, scores)), tuple(map(torch.tensor, labels)))
     assert float(got) == pytest.approx(want, rel=1e-6)
+
+
+def test_hint_loss_is_square_near_and_straight_far_over_what_is_known() -> None:
+    told = torch.tensor([[0.5, 9.0], [3.0, -1.0]])
+    hints = torch.tensor([[0.0, math.nan], [0.0, -1.0]])
+    assert float(hint_loss(told, hints)) == pytest.approx((0.125 + 2.5 + 0.0) / 3)
+    assert float(hint_loss(told, torch.full((2, 2), math.nan))) == 0.0
 
 
 def test_contrast_loss_is_the_papers_ratio() -> None:

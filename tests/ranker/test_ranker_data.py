@@ -84,3 +84,20 @@ def test_wrong_clips_and_sets_are_refused(tmp_path: Path) -> None:
     (tmp_path / "shard-00000.npy").write_bytes(b"\x93NUMPY\x01\x00 nonsense")
     with pytest.raises(RankerError, match="damaged"):
         Dataset(tmp_path)
+
+
+def test_hints_are_scaled_and_unknown_ones_are_nan(tmp_path: Path) -> None:
+    rng = np.random.default_rng(1)
+    with ShardWriter(tmp_path, WORDS, (SIZE, SIZE), FRAMES) as writer:
+        for i in range(12):
+            told = {} if i == 3 else {"size": float(i), "right_way": 1.0 + i % 2}
+            writer.add(clip(rng, True, 0, 0, 0), True, None, None, None, "g", 0.0, about={"hints": told})
+    names, hints = Dataset(tmp_path).hints
+    assert names == ("right_way", "size")
+    known = np.delete(hints, 3, 0)
+    assert np.isnan(hints[3]).all()
+    assert known[:, 1].mean() == pytest.approx(0, abs=1e-6)
+    assert known[:, 1].std() == pytest.approx(1, abs=1e-6)
+    assert (known[:, 0] > 0).all()  # a mirrored one has to be the negative, so the middle stays 0
+    write_clips(tmp_path / "none", 4)
+    assert Dataset(tmp_path / "none").hints[1].shape == (4, 0)

@@ -3,15 +3,21 @@
 Positives are what the virtual designer picks of a shot's proposals (:mod:`vdsl.pipeline.designer`);
 negatives are picks shaken about at graded strengths, and picks made to show no type, as many as there are
 positives and measured to be worse (:mod:`vdsl.pipeline.clips`). Every draw is keyed by the seed and the
-story's number, whole stories go to disk, and the set itself says which were: so it is the same whether or
-not its making was stopped.
+story's number, whole stories go to disk in their order, and the set itself says which were: so it is the same
+whether or not its making was stopped, and however many processes make it.
 """
 
 from __future__ import annotations
 
+import multiprocessing
+import os
 from collections import deque
-from collections.abc import Iterator
-from concurrent.futures import Future, ThreadPoolExecutor
+from collections.abc import Callable, Iterator
+from concurrent.futures import Future, ProcessPoolExecutor
+from contextlib import suppress
+from dataclasses import dataclass
+from itertools import count
+from multiprocessing.queues import Queue
 from pathlib import Path
 from time import perf_counter
 from typing import Any
@@ -24,16 +30,26 @@ from runtime.raster.types import LOOK_VERSION
 
 from ..propose.types import ProposalGrid, StoryProposal
 from .casting import Scene, Troupe
-from .clips import Clip, clips_of
+from .clips import clips_of
 from .filming import SEGMENTS, Camerawork
+from .hints import hints_of
 from .labels import WORDS
 from .progress import Progress, Silence
 
 #: Raised when other takes or labels come of the same seed.
-_RECIPE = 2
+_RECIPE = 3
 _PROPOSALS = 16
 _SHARD = 64
-_AHEAD = 2  # scenes drawn while the next are staged and proposed
+#: Processes at most, and stories that each has waiting: a story's pictures take up to 80 MB.
+_PROCESSES, _WAITING = 16, 2
+
+
+@dataclass(frozen=True, eq=False)
+class _Filmed:
+    """The clips of a scene. frames: uint8 [N, T, S, S, 3]; labels: the rest that ``ShardWriter.add`` takes"""
+
+    frames: NDArray[np.uint8]
+    labels: list[tuple[Any, ...]]
 
 
 def made(seed: int) -> dict[str, Any]:
@@ -48,80 +64,108 @@ def generate(
     device: str = "auto",
     progress: Progress | None = None,
     size: int = 224,
+    processes: int | None = None,
 ) -> int:
     """Write at least ``clips`` clips into ``folder``, going on where an earlier call stopped.
 
-    size: side of the frames in pixels. Returns how many there are. Raises OSError or
-    :class:`ranker.RankerError` for a folder that cannot be used or holds another kind of set.
+    size: side of the frames in pixels; processes: None for one on each core. Returns how many there are.
+    Raises OSError or :class:`ranker.RankerError` for a folder that cannot be used or holds another kind of
+    set.
     """
     watcher = progress or Silence()
     with ShardWriter(folder, WORDS, (size, size), SEGMENTS, shard=1 << 30, made=made(seed)) as writer:
-        number = 1 + max((int(label.about.get("story", -1)) for label in writer.labels), default=-1)
-        begun = len(writer)
+        first = 1 + max((int(label.about.get("story", -1)) for label in writer.labels), default=-1)
+        begun, last = len(writer), perf_counter()
         watcher.begin("clips", max(0, clips - begun), "clips")
         if begun >= clips:
             return begun
-        for scene, made_of, frames, seconds in _drawn(Troupe(seed), number, seed, Camerawork(device), size):
-            if scene.number != number:  # a story is whole
-                if writer.pending >= _SHARD or len(writer) + writer.pending >= clips:
-                    writer.flush()
-                number = scene.number
-                if len(writer) >= clips:
-                    break
-            for clip, pictures in zip(made_of, frames, strict=True):
-                _add(writer, scene, clip, pictures)
-            watcher.advance("clips", len(made_of), seconds)
+        for story in _stories(first, seed, device, size, processes or min(_cores(), _PROCESSES)):
+            for scene in story:
+                for pictures, label in zip(scene.frames, scene.labels, strict=True):
+                    writer.add(pictures, *label)
+            now = perf_counter()
+            watcher.advance("clips", sum(len(scene.labels) for scene in story), now - last)
+            last = now
+            if writer.pending >= _SHARD or len(writer) + writer.pending >= clips:
+                writer.flush()
+            if len(writer) >= clips:
+                break
         return len(writer)
 
 
-def _add(writer: ShardWriter, scene: Scene, clip: Clip, pictures: NDArray[np.uint8]) -> None:
-    c = clip.camera
-    about = {
-        "story": scene.number,
-        "kind": clip.kind,
-        "camera": f"{c.movement} {c.scale} {c.angle}",
-        "place": scene.place,
-        "cast": list(scene.cast),
-    }
-    group = scene.place.partition(".")[0]
-    good = clip.kind == "designer"
-    writer.add(pictures, good, *clip.words, group, clip.strength, scene.split, about)
+def _cores() -> int:
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
-def _drawn(
-    troupe: Troupe, first: int, seed: int, camerawork: Camerawork, size: int
-) -> Iterator[tuple[Scene, list[Clip], NDArray[np.uint8], float]]:
-    """The scenes of all stories from ``first`` on with their clips and the frames of these, in order.
-
-    One thread draws while this one stages and proposes what comes next.
-    """
-    waiting: deque[tuple[Scene, list[Clip], Future[NDArray[np.uint8]]]] = deque()
-    last = perf_counter()
-    with ThreadPoolExecutor(1) as drawer:
-        for scene in _scenes(troupe, first):
-            clips = clips_of(scene, np.random.default_rng((seed, scene.number, scene.shots[0].line)))
-            if clips:
-                waiting.append((scene, clips, drawer.submit(_frames, camerawork, scene, clips, size)))
-            while len(waiting) > _AHEAD:
-                done, of, frames = waiting.popleft()
-                pictures, now = frames.result(), perf_counter()
-                yield done, of, pictures, now - last
-                last = now
-
-
-def _scenes(troupe: Troupe, first: int) -> Iterator[Scene]:
-    number = first
-    while True:
-        yield from troupe.scenes(number, _PROPOSALS)
-        number += 1
+def _stories(first: int, seed: int, device: str, size: int, processes: int) -> Iterator[list[_Filmed]]:
+    """The filmed scenes of all stories from ``first`` on, story by story in their order."""
+    if processes == 1:
+        film = _maker(seed, device, size)
+        yield from map(film, count(first))
+        return
+    context = multiprocessing.get_context("spawn")  # a forked process would share a renderer's threads
+    places: Queue[int] = context.Queue()
+    for place in range(processes):
+        places.put(place)
+    pool = ProcessPoolExecutor(processes, context, _settle, (places, seed, device, size))
+    waiting: deque[Future[list[_Filmed]]] = deque()
+    try:
+        for number in count(first):
+            waiting.append(pool.submit(_film_here, number))
+            if len(waiting) >= _WAITING * processes:
+                yield waiting.popleft().result()
+    finally:
+        pool.shutdown(cancel_futures=True)
 
 
-def _frames(camerawork: Camerawork, scene: Scene, clips: list[Clip], size: int) -> NDArray[np.uint8]:
-    """All clips of a scene in one go: they share its moments."""
-    cameras = tuple(clip.camera for clip in clips)
-    return camerawork.judge_frames(
-        scene.staged, scene.shots[0].style, stories_of(scene.grids), cameras, (size, size)
-    )
+_here: list[Callable[[int], list[_Filmed]]] = []
+
+
+def _settle(places: Queue[int], seed: int, device: str, size: int) -> None:
+    """Make this process one that films stories, on a core of its own."""
+    place = places.get()
+    with suppress(AttributeError, OSError):  # where processes cannot be kept to cores, they share them
+        cores = sorted(os.sched_getaffinity(0))
+        os.sched_setaffinity(0, {cores[place % len(cores)]})
+    _here.append(_maker(seed, device, size))
+
+
+def _film_here(number: int) -> list[_Filmed]:
+    return _here[0](number)
+
+
+def _maker(seed: int, device: str, size: int) -> Callable[[int], list[_Filmed]]:
+    """What films a story by its number."""
+    troupe, camerawork = Troupe(seed), Camerawork(device)
+
+    def film(number: int) -> list[_Filmed]:
+        scenes = troupe.scenes(number, _PROPOSALS)
+        return [filmed for scene in scenes if (filmed := _filmed(scene, seed, camerawork, size)) is not None]
+
+    return film
+
+
+def _filmed(scene: Scene, seed: int, camerawork: Camerawork, size: int) -> _Filmed | None:
+    """All clips of a scene, drawn in one go: they share its moments."""
+    clips = clips_of(scene, np.random.default_rng((seed, scene.number, scene.shots[0].line)))
+    if not clips:
+        return None
+    cameras, style = tuple(clip.camera for clip in clips), scene.shots[0].style
+    frames = camerawork.judge_frames(scene.staged, style, stories_of(scene.grids), cameras, (size, size))
+    labels = []
+    for clip in clips:
+        c = clip.camera
+        about = {
+            "story": scene.number,
+            "kind": clip.kind,
+            "camera": f"{c.movement} {c.scale} {c.angle}",
+            "place": scene.place,
+            "cast": list(scene.cast),
+            "hints": hints_of(c),
+        }
+        group, good = scene.place.partition(".")[0], clip.kind == "designer"
+        labels.append((good, *clip.words, group, clip.strength, scene.split, about))
+    return _Filmed(frames, labels)
 
 
 def stories_of(grids: tuple[ProposalGrid, ...]) -> tuple[StoryProposal, ...]:

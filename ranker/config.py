@@ -90,10 +90,10 @@ class TrainConfig:
 PAPER = TrainConfig(phases=(Phase(epochs=60, size=224, batch=128),))
 CPU = TrainConfig(
     phases=(
-        Phase(epochs=8, size=64, frames=3, key_frames=1, batch=32),
-        Phase(epochs=4, size=96, frames=3, key_frames=1, batch=32),
+        Phase(epochs=6, size=64, frames=3, key_frames=1, batch=32),
+        Phase(epochs=3, size=96, frames=3, key_frames=1, batch=32),
         Phase(epochs=1, size=128, frames=3, key_frames=1, batch=32),
-        Phase(epochs=1, size=192, frames=2, key_frames=1, batch=32),
+        Phase(epochs=1, size=160, frames=2, key_frames=1, batch=32),
     ),
     momentum=0.99,
     contrast_weight=0.25,

@@ -9,6 +9,7 @@ numbers for a shot whatever it is worked out with, up to rounding.
 
 from __future__ import annotations
 
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
 
 import numpy as np
@@ -28,7 +29,7 @@ _LUMA = (0.299, 0.587, 0.114)  # of sRGB, by channel (BT.601)
 _WINDOW = 9  # pixels over which brightness is made even
 _NOISE = 4.0  # steps of 255 that count for nothing
 _ROUNDS, _OUTLIER = 4, 0.5  # of the fit; pixels off it at which a block counts half
-_AT_ONCE = 8  # clips
+_AT_ONCE = 2  # clips
 #: Signs of the numbers of a pair in the mirror.
 _MIRROR = (-1.0, 1.0, 1.0, -1.0, -1.0, 1.0, 1.0, 1.0)
 
@@ -74,15 +75,27 @@ def motions(data: Dataset) -> NDArray[np.float32]:
             if moved.shape == (len(frames), *shape) and moved.dtype == np.float32:
                 found.append(moved)
                 continue
-        with torch.inference_mode():
-            parts = [
-                motion(torch.from_numpy(np.array(frames[i : i + _AT_ONCE])).to(device)).cpu().numpy()
-                for i in range(0, len(frames), _AT_ONCE)
-            ]
-        found.append(np.concatenate(parts).astype(np.float32))
+        found.append(_of_shard(frames, device))
         with suppress(OSError):
             np.save(kept, found[-1])
     return np.concatenate(found)
+
+
+def _of_shard(frames: NDArray[np.uint8], device: torch.device) -> NDArray[np.float32]:
+    """The motion of clips [n, T, H, W, 3]; a core to each few of them, as single steps are small."""
+
+    @torch.inference_mode()
+    def moved(begin: int) -> NDArray[np.float32]:
+        clips = torch.from_numpy(np.array(frames[begin : begin + _AT_ONCE]))
+        return motion(clips.to(device)).float().cpu().numpy()
+
+    threads = torch.get_num_threads()
+    torch.set_num_threads(1)
+    try:
+        with ThreadPoolExecutor(threads) as pool:
+            return np.concatenate(list(pool.map(moved, range(0, len(frames), _AT_ONCE))))
+    finally:
+        torch.set_num_threads(threads)
 
 
 def _evened(pictures: Tensor) -> Tensor:

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import random
+from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures.process import BrokenProcessPool
 from dataclasses import fields, replace
 from functools import partial
 from pathlib import Path
@@ -19,7 +21,7 @@ from vdsl.library import Catalog
 from vdsl.pipeline.acts import stage_acts
 from vdsl.pipeline.casting import Scene, Troupe, split_of_story
 from vdsl.pipeline.clips import Clip, clips_of
-from vdsl.pipeline.dataset import generate
+from vdsl.pipeline.dataset import _Filmed, generate
 from vdsl.pipeline.designer import judged, picks
 from vdsl.pipeline.hints import hints_of
 from vdsl.pipeline.labels import WORDS, classes
@@ -234,6 +236,33 @@ def test_several_processes_make_the_set_that_one_makes(tmp_path: Path) -> None:
     assert [path.name for path in one] == [path.name for path in two]
     for a, b in zip(one, two, strict=True):
         assert a.read_bytes() == b.read_bytes(), a.name
+
+
+def test_a_process_that_is_lost_is_told_and_loses_nothing(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    class LostPool(ThreadPoolExecutor):
+        """Its second story is never told."""
+
+        def __init__(
+            self, processes: int, context: object, settle: object, about: tuple[object, ...]
+        ) -> None:
+            super().__init__(1)
+
+        def submit(self, film, number: int):  # type: ignore[no-untyped-def,override]
+            return super().submit(self._film, number)
+
+        def _film(self, number: int) -> list[_Filmed]:
+            if number > 0:
+                raise BrokenProcessPool
+            label = (True, None, None, None, "kitchen", 0.0, "train", {"story": number})
+            return [_Filmed(np.zeros((1, 8, 48, 48, 3), np.uint8), [label])]
+
+    monkeypatch.setattr("vdsl.pipeline.dataset.ProcessPoolExecutor", LostPool)
+    monkeypatch.setattr("vdsl.pipeline.dataset._SHARD", 1)
+    with pytest.raises(OSError, match="start again to go on"):
+        generate(tmp_path, 10, seed=3, device="cpu", size=48, processes=2)
+    assert [label.about["story"] for label in Dataset(tmp_path).labels] == [0]
 
 
 def test_hints_of_a_mirrored_take_are_mirrored() -> None:

@@ -11,9 +11,11 @@ from __future__ import annotations
 
 import multiprocessing
 import os
+import signal
 from collections import deque
 from collections.abc import Callable, Iterator
 from concurrent.futures import Future, ProcessPoolExecutor
+from concurrent.futures.process import BrokenProcessPool
 from contextlib import suppress
 from dataclasses import dataclass
 from itertools import count
@@ -114,6 +116,11 @@ def _stories(first: int, seed: int, device: str, size: int, processes: int) -> I
             waiting.append(pool.submit(_film_here, number))
             if len(waiting) >= _WAITING * processes:
                 yield waiting.popleft().result()
+    except BrokenProcessPool as error:
+        raise OSError(
+            "a process that films stories was ended from outside, perhaps for want of memory; "
+            "start again to go on from what is there"
+        ) from error
     finally:
         pool.shutdown(cancel_futures=True)
 
@@ -122,7 +129,8 @@ _here: list[Callable[[int], list[_Filmed]]] = []
 
 
 def _settle(places: Queue[int], seed: int, device: str, size: int) -> None:
-    """Make this process one that films stories, on a core of its own."""
+    """Make this process one that films stories, on a core of its own; whoever began it says when to stop."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
     place = places.get()
     with suppress(AttributeError, OSError):  # where processes cannot be kept to cores, they share them
         cores = sorted(os.sched_getaffinity(0))

@@ -25,7 +25,11 @@ _COMPARED = 200
 
 
 def ablate(
-    data_dir: str | Path, out_dir: str | Path, config: TrainConfig, report: Report | None = None
+    data_dir: str | Path,
+    out_dir: str | Path,
+    config: TrainConfig,
+    report: Report | None = None,
+    start: str | Path | None = None,
 ) -> dict[str, Any]:
     """Train with L_b alone, with L_c, with L_q and with all; write ``ablation.json`` and ``ablation.md``.
 
@@ -44,7 +48,7 @@ def ablate(
             class_weight=config.class_weight * classes,
             contrast_weight=config.contrast_weight * contrast,
         )
-        measured = train(data_dir, folder, some, report)
+        measured = train(data_dir, folder, some, report, start)
         found[name] = measured | {"diversity": diversity(Ranker.load(folder / "weights"), data, held)}
     (out / "ablation.json").write_text(json.dumps(found, indent=1) + "\n", "utf-8")
     (out / "ablation.md").write_text(table(found), "utf-8")

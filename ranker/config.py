@@ -20,6 +20,8 @@ class ModelConfig:
 
     frames, size: pictures of a shot and their side in pixels, at inference
     contrast: length of the vectors of L_q; motion: of what is made of the picture's motion, 0 for none
+    moments: whether a frame is described by where in it features are too, and not by how strong alone
+    measures: numbers of L_h that the heads read off the features before they judge, 0 for none
     """
 
     movements: tuple[str, ...]
@@ -30,6 +32,8 @@ class ModelConfig:
     size: int = 224
     contrast: int = 128
     motion: int = 0
+    moments: bool = False
+    measures: int = 0
 
 
 @dataclass(frozen=True)
@@ -38,6 +42,7 @@ class Phase:
 
     frames, key_frames: how many of the stored frames the query and the key of L_q see; they never
     share one, so together they are at most all
+    share: of the clips that an epoch goes through, others every time
     """
 
     epochs: int
@@ -45,6 +50,7 @@ class Phase:
     frames: int = 4
     key_frames: int = 4
     batch: int = 128
+    share: float = 1.0
 
 
 @dataclass(frozen=True)
@@ -53,8 +59,8 @@ class TrainConfig:
 
     contrast_weight, class_weight, hint_weight: factors of L_q, L_c and L_h (0 leaves the loss out)
     dictionary, momentum, temperature: K, the momentum encoder's m and τ of L_q
-    motion: as in :class:`ModelConfig`; unmoved: share of the clips whose motion is kept from the heads, since
-        a glance at a shot does not have it
+    motion, moments: as in :class:`ModelConfig`; unmoved: share of the clips whose motion is kept from the
+        heads, since a glance at a shot does not have it
     smoothing: label smoothing; held_out: share of the clips, by whole groups, kept for evaluation
     calibration: batches over which batch-norm statistics are taken anew at full size at the end
     autocast: compute in bfloat16 where the network allows; augment: mirror, and vary the light
@@ -75,6 +81,7 @@ class TrainConfig:
     temperature: float = 0.07
     smoothing: float = 0.0
     motion: int = 128
+    moments: bool = True
     unmoved: float = 0.3
     held_out: float = 0.15
     calibration: int = 40
@@ -90,14 +97,16 @@ class TrainConfig:
 PAPER = TrainConfig(phases=(Phase(epochs=60, size=224, batch=128),))
 CPU = TrainConfig(
     phases=(
-        Phase(epochs=6, size=64, frames=3, key_frames=1, batch=32),
-        Phase(epochs=3, size=96, frames=3, key_frames=1, batch=32),
-        Phase(epochs=1, size=128, frames=3, key_frames=1, batch=32),
-        Phase(epochs=1, size=160, frames=2, key_frames=1, batch=32),
+        Phase(epochs=5, size=64, frames=3, key_frames=1, batch=16),
+        Phase(epochs=3, size=96, frames=3, key_frames=1, batch=16),
+        Phase(epochs=1, size=128, frames=3, key_frames=1, batch=16),
+        Phase(epochs=1, size=160, frames=2, key_frames=1, batch=16, share=0.5),
+        Phase(epochs=1, size=224, frames=2, key_frames=1, batch=16, share=0.25),
     ),
+    learning_rate=8e-4,
     momentum=0.99,
     contrast_weight=0.25,
-    hint_weight=1.0,
+    hint_weight=6.0,
     smoothing=0.05,
 )
 RECIPES = {"paper": PAPER, "cpu": CPU}
@@ -130,8 +139,9 @@ def model_from_json(values: dict[str, Any]) -> ModelConfig:
     try:
         words = {k: tuple(str(w) for w in values[k]) for k in ("movements", "scales", "angles")}
         rest = {k: int(values[k]) for k in ("frames", "size", "contrast")}
-        rest["motion"] = int(values.get("motion", 0))
-        config = ModelConfig(**words, backbone=str(values["backbone"]), **rest)  # type: ignore[arg-type]
+        rest |= {k: int(values.get(k, 0)) for k in ("motion", "measures")}
+        moments = bool(values.get("moments", False))
+        config = ModelConfig(**words, backbone=str(values["backbone"]), moments=moments, **rest)  # type: ignore[arg-type]
     except (KeyError, TypeError, ValueError) as error:
         raise RankerError(f"the ranker's config is not understood: {error!r}") from error
     if config.backbone not in BACKBONES or not all((config.movements, config.scales, config.angles)):
@@ -141,6 +151,7 @@ def model_from_json(values: dict[str, Any]) -> ModelConfig:
         and 16 <= config.size <= 1024
         and 1 <= config.contrast <= 4096
         and 0 <= config.motion <= 4096
+        and 0 <= config.measures <= 4096
     ):
         raise RankerError("the ranker's config is not understood: sizes out of range")
     return config

@@ -116,7 +116,7 @@ class Ranker:
         flat = frames.reshape(-1, size, size, 3)
         room = self._batch * self.config.frames
         parts = [self._encoded(flat[i : i + room]) for i in range(0, max(len(flat), 1), room)]
-        features = torch.cat(parts).view(len(frames), len(at), self._model.width)
+        features = torch.cat(parts).view(len(frames), len(at), self._model.described)
         return _scores(self._model.judge(features, self._times[at].expand(len(frames), -1)))
 
     def _encoded(self, pictures: NDArray[np.uint8]) -> Tensor:
@@ -130,7 +130,7 @@ class Ranker:
     def _score(self, frames: NDArray[np.uint8]) -> Scores:
         count = len(frames)
         features = self._encoded(frames.reshape(-1, *frames.shape[2:]))
-        features = features.view(count, self.config.frames, self._model.width)
+        features = features.view(count, self.config.frames, self._model.described)
         moved = motion(torch.from_numpy(frames).to(self.device)) if self.config.motion else None
         return _scores(self._model.judge(features, self._times.expand(count, -1), moved))
 

@@ -133,7 +133,7 @@ class Int8Backbone:
     """
 
     def __init__(self, folded: nn.Module, ranges: Ranges, count: int, size: int) -> None:
-        self._folded, self._ranges = folded, ranges
+        self._folded, self._ranges, self._pool = folded, ranges, folded.get_submodule("avgpool")
         self._packed: dict[str, _Packed] = {}  # by the first pass: what comes in is known only on the way
         self._border = torch.tensor([round(255 * m) for m in PIXEL_MEAN], dtype=torch.uint8)
         self(torch.zeros(count, size, size, 3, dtype=torch.uint8))
@@ -145,7 +145,7 @@ class Int8Backbone:
         bordered = self._border.expand(count, size + 2 * edge, size + 2 * edge, 3).contiguous()
         bordered[:, edge:-edge, edge:-edge] = pictures  # black is not what a ResNet's border means
         out = _through(self._folded, _Eight(bordered.movedim(-1, 1), 1.0, 0), self._layer, _pooled)
-        return (out.values.sum((2, 3), dtype=torch.int32) / out.values[0, 0].numel() - out.zero) * out.scale
+        return self._pool((out.values.float() - out.zero) * out.scale)
 
     def _layer(self, name: str, x: _Eight, add: _Eight | None = None, relu: bool = True) -> _Eight:
         if name not in self._packed:

@@ -2,8 +2,11 @@
 
 Every frame goes through the same ResNet; what comes out is fused over time at the end (paper,
 section 3.3). The fusion is TSN's average consensus and, beside it, the slope and the spread of the
-features over time: an average alone cannot tell a pan to the left from one to the right. What single frames
-do not show, how the picture moves as a whole, comes in as numbers (:mod:`ranker.motion`).
+features over time: an average alone cannot tell a pan to the left from one to the right. How well a picture
+is composed hangs on where things are in it, which the average over the picture of a ResNet forgets; so its
+first moments go along (:class:`Pool`). What single frames do not show, how the picture moves as a whole,
+comes in as numbers (:mod:`ranker.motion`). And where clips come with what is known of them in numbers (L_h),
+those are told first and judged by (a concept bottleneck, Koh et al. 2020, with the features beside it).
 """
 
 from __future__ import annotations
@@ -27,7 +30,8 @@ class Output(NamedTuple):
     """What the network says of B shots.
 
     logit [B], of p_b; movement, scale, angle [B, classes], logits of p_c; feature [B, D], the average
-    of the frames' features; contrast [B, C], unit vectors z of L_q; fused [B, 3 D], what the heads see
+    of the frames' features; contrast [B, C], unit vectors z of L_q; told [B, measures], what is read off the
+    features of the numbers of L_h
     """
 
     logit: Tensor
@@ -36,7 +40,33 @@ class Output(NamedTuple):
     angle: Tensor
     feature: Tensor
     contrast: Tensor
-    fused: Tensor
+    told: Tensor
+
+
+class Pool(nn.Module):
+    """The average of feature maps [N, D, H, W] over the picture, and with ``moments`` their first moments.
+
+    Returns float32 [N, D], or [N, 3 D]: average, average times place to the right, to the bottom; places
+    run from -1 to 1, so that they mean the same at any size.
+    """
+
+    def __init__(self, moments: bool) -> None:
+        super().__init__()
+        self.moments = moments
+
+    def forward(self, maps: Tensor) -> Tensor:
+        columns = maps.float().mean(2)
+        average = columns.mean(2)
+        if not self.moments:
+            return average
+        rows = maps.float().mean(3)
+        right, down = ((line * _places(line)).mean(2) for line in (columns, rows))
+        return torch.cat([average, right, down], 1)
+
+
+def _places(line: Tensor) -> Tensor:
+    count = line.shape[2]
+    return (torch.arange(count, device=line.device, dtype=line.dtype) + 0.5) * 2 / count - 1
 
 
 class ShotRanker(nn.Module):
@@ -47,13 +77,14 @@ class ShotRanker(nn.Module):
         self.config = config
         backbone = getattr(torchvision_models(), config.backbone)(weights=None, zero_init_residual=True)
         width = backbone.fc.in_features
-        backbone.fc = nn.Identity()
+        backbone.avgpool, backbone.fc = Pool(config.moments), nn.Identity()
         self.backbone: nn.Module = backbone
         self.width = width
-        self.professional = nn.Linear(3 * width, 1)
-        self.movement = nn.Linear(3 * width, len(config.movements))
-        self.scale = nn.Linear(3 * width, len(config.scales))
-        self.angle = nn.Linear(3 * width, len(config.angles))
+        #: Numbers that describe a frame: [N, described] is what the backbone makes of N frames.
+        self.described = width * (3 if config.moments else 1)
+        fused, sizes = 3 * self.described, (len(config.movements), len(config.scales), len(config.angles))
+        self.professional = nn.Linear(fused, 1)
+        self.movement, self.scale, self.angle = (nn.Linear(fused, n) for n in sizes)
         self.contrast = nn.Sequential(nn.Linear(width, 256), nn.ReLU(), nn.Linear(256, config.contrast))
         self.motion: nn.Module | None = None
         if config.motion:
@@ -62,6 +93,13 @@ class ShotRanker(nn.Module):
             self.motion = nn.Sequential(*hidden, nn.Linear(256, config.motion), nn.ReLU(), nn.Dropout(0.35))
             self.professional_moved = nn.Linear(config.motion, 1, bias=False)
             self.movement_moved = nn.Linear(config.motion, len(config.movements), bias=False)
+        self.reader: nn.Module | None = None
+        if config.measures:
+            self.reader = nn.Linear(fused, config.measures)
+            if config.motion:
+                self.reader_moved = nn.Linear(config.motion, config.measures, bias=False)
+            reasons = nn.Sequential(nn.Linear(config.measures, 128), nn.ReLU(), nn.Dropout(0.2))
+            self.reasons = nn.Sequential(*reasons, nn.Linear(128, 1 + sum(sizes)))
 
     def forward(self, frames: Tensor, times: Tensor, moved: Tensor | None = None) -> Output:
         """Judge shots: ``frames`` [B, T, 3, H, W] as :func:`normalised`, ``times`` [B, T] in 0..1.
@@ -70,29 +108,39 @@ class ShotRanker(nn.Module):
         """
         batch, count = frames.shape[:2]
         flat = frames.flatten(0, 1).contiguous(memory_format=torch.channels_last)
-        features = self.backbone(flat).float().view(batch, count, self.width)
+        features = self.backbone(flat).float().view(batch, count, self.described)
         return self.judge(features, times, moved)
 
     def judge(self, features: Tensor, times: Tensor, moved: Tensor | None = None) -> Output:
-        """The heads over features of single frames [B, T, D], in float32."""
+        """The heads over what describes single frames [B, T, described], in float32."""
         with torch.autocast(features.device.type, enabled=False):
-            average = features.mean(1)
+            average = features[:, :, : self.width].mean(1)
             fused = fuse(features, times)
             professional, movement = self.professional(fused), self.movement(fused)
-            if self.motion is not None and moved is not None:
-                known = moved.isfinite().flatten(1).all(1, keepdim=True)
-                seen = self.motion(moved.nan_to_num().flatten(1)) * known
+            scale, angle = self.scale(fused), self.angle(fused)
+            seen = self._seen(moved)
+            if seen is not None:
                 professional = professional + self.professional_moved(seen)
                 movement = movement + self.movement_moved(seen)
-            return Output(
-                professional.squeeze(1),
-                movement,
-                self.scale(fused),
-                self.angle(fused),
-                average,
-                functional.normalize(self.contrast(average), dim=1),
-                fused,
-            )
+            told = fused.new_zeros(len(fused), 0)
+            if self.reader is not None:
+                told = self.reader(fused)
+                if seen is not None:
+                    told = told + self.reader_moved(seen)
+                sizes = [1, movement.shape[1], scale.shape[1], angle.shape[1]]
+                more = self.reasons(told).split(sizes, 1)
+                professional, movement, scale, angle = (
+                    a + b for a, b in zip((professional, movement, scale, angle), more, strict=True)
+                )
+            contrast = functional.normalize(self.contrast(average), dim=1)
+            return Output(professional.squeeze(1), movement, scale, angle, average, contrast, told)
+
+    def _seen(self, moved: Tensor | None) -> Tensor | None:
+        """What is made of the motion of shots; zeros where it is not known."""
+        if self.motion is None or moved is None:
+            return None
+        known = moved.isfinite().flatten(1).all(1, keepdim=True)
+        return self.motion(moved.nan_to_num().flatten(1)) * known
 
 
 def fuse(features: Tensor, times: Tensor) -> Tensor:

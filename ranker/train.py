@@ -38,6 +38,8 @@ from .weights import load_model, save_weights
 
 #: Clips by which eight bits are fitted, and by which they are compared with float32.
 _MEASURED, _COMPARED = 64, 200
+_WIDE_PACE = 0.1  # of the learning rate, for layers that read all that describes a shot
+_LUMA = (0.299, 0.587, 0.114)  # of sRGB, by channel (BT.601)
 Report = Callable[[dict[str, Any]], None]
 
 
@@ -56,10 +58,15 @@ class Batch(NamedTuple):
 
 
 def train(
-    data_dir: str | Path, out_dir: str | Path, config: TrainConfig = PAPER, report: Report | None = None
+    data_dir: str | Path,
+    out_dir: str | Path,
+    config: TrainConfig = PAPER,
+    report: Report | None = None,
+    start: str | Path | None = None,
 ) -> dict[str, Any]:
     """Train a ranker and return what it measures on the held-out groups.
 
+    start: a folder of weights to start from, as far as they fit; without one they are random
     report: called with every line of the log: ``epoch``, ``step``, ``steps``, ``loss`` and its parts,
     ``held_out`` (accuracies on some of the held-out clips, at the phase's size), ``seconds``; at last
     ``measured``
@@ -86,29 +93,25 @@ def train(
         data.frames,
         config.size,
         motion=config.motion,
+        moments=config.moments,
+        measures=len(data.hints[0]) if config.hint_weight else 0,
     )
     moved = torch.from_numpy(motions(data)) if config.motion else None
-    model = ShotRanker(shape).to(device)
+    model = ShotRanker(shape)
+    began = take_over(model, start) if start else None
+    model.to(device)
     model.to(memory_format=torch.channels_last)  # type: ignore[call-overload]
     keys = momentum_copy(model)
     dictionary = Dictionary(config.dictionary, shape.contrast, config.seed).to(device)
-    # What reads hints off the features helps the network to learn, and is not kept.
-    reader = nn.Linear(3 * model.width, max(1, len(data.hints[0]))).to(device)
-    optimizer = _optimizer(model, reader, config)
+    optimizer = _optimizer(model, config)
 
     # Where an earlier run stopped.
     schedule = [phase for phase in config.phases for _ in range(phase.epochs)]
-    lengths = [math.ceil(len(learn) / phase.batch) for phase in schedule]
+    lengths = [math.ceil(_count(learn, phase) / phase.batch) for phase in schedule]
     state = out / "checkpoint.pt"
-    learning = {
-        "model": model,
-        "keys": keys,
-        "dictionary": dictionary,
-        "reader": reader,
-        "optimizer": optimizer,
-    }
+    learning = {"model": model, "keys": keys, "dictionary": dictionary, "optimizer": optimizer}
     done, step = _resume(state, config, learning)
-    start = time.monotonic()
+    clock = time.monotonic()
 
     with (out / "log.jsonl").open("a", encoding="utf-8") as log:
         for epoch in range(done, len(schedule)):
@@ -118,9 +121,9 @@ def train(
             sums = np.zeros(5)
             for batch in _batches(data, learn, phase, config, epoch, moved):
                 for group in optimizer.param_groups:
-                    group["lr"] = learning_rate(config, step, sum(lengths))
+                    group["lr"] = group["pace"] * learning_rate(config, step, sum(lengths))
 
-                parts = _losses(model, keys, dictionary, reader, batch, config, device)
+                parts = _losses(model, keys, dictionary, batch, config, device)
                 loss = parts[0] + config.class_weight * parts[1] + config.contrast_weight * parts[2]
                 loss = loss + config.hint_weight * parts[3]
                 optimizer.zero_grad(set_to_none=True)
@@ -141,7 +144,7 @@ def train(
             }
             line |= {n: round(float(v) / lengths[epoch], 5) for n, v in zip(names, sums, strict=True)}
             line["held_out"] = watch(model, data, held, phase.size, config, device, moved)
-            line |= {"steps": sum(lengths), "seconds": round(time.monotonic() - start, 1)}
+            line |= {"steps": sum(lengths), "seconds": round(time.monotonic() - clock, 1)}
             _tell(log, line, report)
             draw_curves(out)
             _keep(state, config, learning, epoch + 1, step)
@@ -163,9 +166,25 @@ def train(
             }
         _tell(log, {"measured": measured}, report)
 
-    about = {"training": to_json(config), "data": data.about(), "measured": measured}
+    training = to_json(config) | ({"start": began} if began else {})
+    about = {"training": training, "data": data.about(), "measured": measured}
     save_weights(out / "weights", model, **about, ranges=ranges)
     return measured
+
+
+def take_over(model: ShotRanker, folder: str | Path) -> str:
+    """Give a network all of other weights that it has a place for, and return the digest of these."""
+    other, card = load_model(folder)
+    ours = model.state_dict()
+    fit = {k: v for k, v in other.state_dict().items() if k in ours and v.shape == ours[k].shape}
+    words, others = model.config, other.config
+    for name in ("movement", "scale", "angle"):  # an output is of a word
+        if getattr(words, f"{name}s") != getattr(others, f"{name}s"):
+            fit = {k: v for k, v in fit.items() if not k.startswith(name)}
+    if not any(k.startswith("backbone.") for k in fit):
+        raise RankerError(f"{folder}: nothing of these weights fits a {words.backbone}")
+    model.load_state_dict(ours | fit)
+    return card.sha256
 
 
 def int8_ranges(model: ShotRanker, data: Dataset, clips: NDArray[np.int64], seed: int = 0) -> Ranges:
@@ -249,7 +268,6 @@ def _losses(
     model: ShotRanker,
     keys: ShotRanker,
     dictionary: Dictionary,
-    reader: nn.Linear,
     batch: Batch,
     config: TrainConfig,
     device: torch.device,
@@ -262,7 +280,7 @@ def _losses(
     classes = class_loss((out.movement, out.scale, out.angle), labels, config.smoothing)
     hint = torch.zeros((), device=device)
     if config.hint_weight and batch.hints.shape[1]:
-        hint = hint_loss(reader(out.fused), batch.hints.to(device))
+        hint = hint_loss(out.told, batch.hints.to(device))
     if config.contrast_weight == 0:
         return binary, classes, torch.zeros((), device=device), hint
     with torch.no_grad(), torch.autocast(device.type, torch.bfloat16, enabled=config.autocast):
@@ -283,7 +301,7 @@ def _batches(
     moved: Tensor | None = None,
 ) -> Iterator[Batch]:
     """The clips in an order that hangs on seed and epoch alone; the next batch is read meanwhile."""
-    order = np.random.default_rng((config.seed, epoch + 1)).permutation(clips)
+    order = np.random.default_rng((config.seed, epoch + 1)).permutation(clips)[: _count(clips, phase)]
     parts = [order[i : i + phase.batch] for i in range(0, len(order), phase.batch)]
     if len(parts) > 1 and len(parts[-1]) == 1:  # batch norm needs company
         parts[-1] = np.append(parts[-1], order[0])
@@ -299,6 +317,10 @@ def _batches(
                 key = (epoch + 1, n + ahead)
                 made.append(readers.submit(_batch, data, parts[n + ahead], phase, config, key, moved))
             yield batch
+
+
+def _count(clips: NDArray[np.int64], phase: Phase) -> int:
+    return max(min(2, len(clips)), round(phase.share * len(clips)))
 
 
 def _batch(
@@ -352,14 +374,16 @@ def _batch(
 def varied(clip: NDArray[np.uint8], rng: np.random.Generator) -> tuple[NDArray[np.uint8], bool]:
     """The clip uint8 [T, H, W, 3] in another light and perhaps mirrored; whether it was.
 
-    Brightness, contrast and the balance of colours say nothing about how well a shot is taken.
+    Brightness, contrast and the colours say nothing about how well a shot is taken.
     """
     gain = rng.uniform(0.85, 1.15) * rng.uniform(0.95, 1.05, 3)
-    lift = rng.uniform(-18, 18)
-    table = np.clip((np.arange(256)[:, None] - 128) * gain + 128 + lift, 0, 255).astype(np.uint8)
+    gray = max(0.0, rng.uniform(-0.5, 1.0))
+    mixed = gain[:, None] * ((1 - gray) * np.eye(3) + gray * np.asarray(_LUMA))
+    lift = rng.uniform(-18, 18) + 128 - 128 * gain
     count, height, width = clip.shape[:3]
     tall = np.ascontiguousarray(clip).reshape(count * height, width, 3)
-    out = np.asarray(cv2.LUT(tall, table[None]), np.uint8).reshape(clip.shape)
+    turned = cv2.transform(tall, np.column_stack([mixed, lift]))
+    out = np.asarray(turned, np.uint8).reshape(clip.shape)
     flipped = bool(rng.random() < 0.5)
     return (out[:, :, ::-1] if flipped else out), flipped
 
@@ -371,13 +395,18 @@ def mirror_words(words: tuple[str, ...]) -> list[int]:
     return [words.index(m) if m in words else i for i, m in enumerate(mirrored)]
 
 
-def _optimizer(model: ShotRanker, reader: nn.Linear, config: TrainConfig) -> torch.optim.Optimizer:
-    learnt = [*model.parameters(), *reader.parameters()]
-    decayed = [p for p in learnt if p.ndim > 1]
-    plain = [p for p in learnt if p.ndim <= 1]
+def _optimizer(model: ShotRanker, config: TrainConfig) -> torch.optim.Optimizer:
+    # What sums up thousands of features would leap at the pace of the rest.
+    wide = {id(p) for p in model.parameters() if p.ndim == 2 and p.shape[1] >= 3 * model.width}
+    decayed = [p for p in model.parameters() if p.ndim > 1 and id(p) not in wide]
     groups = [
-        {"params": decayed, "weight_decay": config.weight_decay},
-        {"params": plain, "weight_decay": 0.0},
+        {"params": decayed, "weight_decay": config.weight_decay, "pace": 1.0},
+        {
+            "params": [p for p in model.parameters() if id(p) in wide],
+            "weight_decay": config.weight_decay,
+            "pace": _WIDE_PACE,
+        },
+        {"params": [p for p in model.parameters() if p.ndim <= 1], "weight_decay": 0.0, "pace": 1.0},
     ]
     if config.optimizer == "adamw":
         return torch.optim.AdamW(groups, lr=config.learning_rate)

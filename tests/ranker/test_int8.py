@@ -31,7 +31,7 @@ def clips(count: int, seed: int) -> np.ndarray:
 def network(backbone: str) -> ShotRanker:
     """Random weights whose batch norms are used to the clips and are not those of a new network."""
     torch.manual_seed(5)
-    model = ShotRanker(model_config(backbone=backbone))
+    model = ShotRanker(model_config(backbone=backbone, moments=True, measures=3))
     for module in model.modules():
         if isinstance(module, torch.nn.BatchNorm2d):
             torch.nn.init.uniform_(module.weight, 0.5, 1.2)

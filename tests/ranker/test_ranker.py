@@ -27,7 +27,7 @@ from vdsl.pipeline.judging import DiscriminatorJudge
 def weights(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Random weights with batch-norm statistics that are not those of a new network."""
     torch.manual_seed(3)
-    model = ShotRanker(model_config())
+    model = ShotRanker(model_config(moments=True, measures=3))
     for module in model.modules():
         if isinstance(module, torch.nn.BatchNorm2d):
             torch.nn.init.uniform_(module.weight, 0.5, 1.2)
@@ -150,7 +150,7 @@ def test_folding_batch_norm_changes_nothing(weights: Path) -> None:
 
 def test_weights_survive_the_disk(tmp_path: Path, weights: Path) -> None:
     model, card = load_model(weights)
-    assert card.model == model_config()
+    assert card.model == model_config(moments=True, measures=3)
     assert card.training == {"seed": 3}
     save_weights(tmp_path, model)
     again, _ = load_model(tmp_path)
@@ -225,6 +225,19 @@ def test_mirrored_clips_have_mirrored_words() -> None:
             np.random.default_rng(seed),
         )
         assert (np.diff(out[0, 0, :, 0].astype(int)) < 0).all() == flipped
+
+
+def test_varied_light_keeps_what_is_dark_and_light_and_can_take_the_colour_away() -> None:
+    ramp = np.repeat(np.arange(0, 240, 8, dtype=np.uint8)[None, None, :, None], 3, -1)
+    coloured = np.zeros((1, 2, 2, 3), np.uint8) + np.array([200, 80, 40], np.uint8)
+    spread = []
+    for seed in range(40):
+        out, flipped = varied(ramp, np.random.default_rng(seed))
+        assert (np.diff(out[0, 0, :, 1].astype(int)) * (-1 if flipped else 1) >= 0).all()
+        assert abs(float(out.mean()) - float(ramp.mean())) < 40
+        spread.append(np.ptp(varied(coloured, np.random.default_rng(seed))[0][0, 0, 0].astype(int)))
+    assert min(spread) < 40
+    assert max(spread) > 140
 
 
 def test_learning_rate_warms_up_and_falls() -> None:

@@ -37,11 +37,11 @@ def dataset(
 
     from ..pipeline.dataset import generate
     from ..pipeline.realclips import add_films, add_picks
-    from .failures import failures_told
+    from .failures import RESUMED, failures_told
     from .progress import Bars
 
     console = Console(stderr=True)
-    with failures_told(out):
+    with failures_told(out, kept=RESUMED):
         added = 0
         if positives is not None:
             added += add_films(out, positives, seed, console.print, size)

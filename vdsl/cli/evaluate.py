@@ -39,10 +39,10 @@ def evaluate(
     from rich.console import Console
 
     from ..pipeline.evaluating import evaluated
-    from .failures import failures_told
+    from .failures import RESUMED, failures_told
     from .progress import Bars
 
-    with failures_told(data), Bars(Console(stderr=True)) as bars:
+    with failures_told(data, kept=RESUMED), Bars(Console(stderr=True)) as bars:
         found = evaluated(data, weights, proposals, clips, exact, seed, device.value, bars)
     if as_json:
         print(json.dumps({"schema": SCHEMA, **found}, indent=1, ensure_ascii=False))

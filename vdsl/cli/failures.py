@@ -17,18 +17,24 @@ from .check import MACHINE, WRONG, stop
 from .show import print_report
 
 INTERRUPTED = 130
+_KEPT = "the last good build is as it was"
+#: For work that goes on where it was when it is begun again.
+RESUMED = "start again to go on from what is there"
 
 
 @contextmanager
-def failures_told(file: Path, format: str = "text") -> Iterator[None]:
-    """Turn what the block raises into a message and an exit code (1, 3 or 130)."""
+def failures_told(file: Path, format: str = "text", kept: str = _KEPT) -> Iterator[None]:
+    """Turn what the block raises into a message and an exit code (1, 3 or 130).
+
+    kept: what is left where the block does not come to its end
+    """
     try:
         yield
     except ScriptError as error:
         print_report(error.report, format, str(file))
         raise typer.Exit(WRONG) from None
     except KeyboardInterrupt:
-        stop("interrupted; the last good build is as it was", INTERRUPTED)
+        stop(f"interrupted; {kept}", INTERRUPTED)
     except (RankerError, DeviceError) as error:
         stop(str(error), MACHINE)
     except MemoryError:
@@ -40,12 +46,12 @@ def failures_told(file: Path, format: str = "text") -> Iterator[None]:
             MACHINE,
         )
     except OSError as error:
-        stop(_about(error), MACHINE)
+        stop(_about(error, kept), MACHINE)
 
 
-def _about(error: OSError) -> str:
+def _about(error: OSError, kept: str) -> str:
     if error.errno == errno.ENOSPC:
-        return f"the disk is full{_of(error)}; the last good build is as it was"
+        return f"the disk is full{_of(error)}; {kept}"
     if error.errno and error.strerror and type(error) is not OSError and error.filename:
         return f"{error.strerror}: {error.filename}"
     return str(error) or type(error).__name__

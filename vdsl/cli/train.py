@@ -16,6 +16,10 @@ if TYPE_CHECKING:
     from ranker.config import TrainConfig
 
 
+#: The word for the weights that come with VDS.
+_SHIPPED = Path("shipped")
+
+
 def train(
     out: Annotated[
         Path | None,
@@ -37,7 +41,11 @@ def train(
         typer.Option(help="Learn from the takes chosen for a storyboard instead; may be given again."),
     ] = None,
     weights: Annotated[
-        Path | None, typer.Option(help="With --picks: whose features.", show_default="the shipped ones")
+        Path | None,
+        typer.Option(
+            help="Weights to start from, a folder or `shipped`; with --picks: whose features.",
+            show_default="random ones; with --picks the shipped",
+        ),
     ] = None,
     seed: Annotated[int, typer.Option(min=0, help="Seed of the stories and the training.")] = 0,
     device: Annotated[Device, typer.Option(help="Where pictures are drawn.")] = Device.auto,
@@ -50,11 +58,11 @@ def train(
     the takes chosen with `vdsc pick` and kept as vds.taste in the project, where compile finds it.
     """
     if picks:
-        _learn(picks, weights, device, as_json)
+        _learn(picks, None if weights == _SHIPPED else weights, device, as_json)
     elif out is None:
         stop("name a folder to train in, or a storyboard with --picks", USAGE)
     else:
-        _train(out, data or out / "clips", clips, recipe, ablation, seed, device, as_json)
+        _train(out, data or out / "clips", clips, recipe, ablation, weights, seed, device, as_json)
 
 
 def _learn(picks: list[Path], weights: Path | None, device: Device, as_json: bool) -> None:
@@ -72,7 +80,15 @@ def _learn(picks: list[Path], weights: Path | None, device: Device, as_json: boo
 
 
 def _train(
-    out: Path, data: Path, clips: int, recipe: str, ablation: bool, seed: int, device: Device, as_json: bool
+    out: Path,
+    data: Path,
+    clips: int,
+    recipe: str,
+    ablation: bool,
+    start: Path | None,
+    seed: int,
+    device: Device,
+    as_json: bool,
 ) -> None:
     # Only now: --help must not wait for numpy, torch and taichi.
     from dataclasses import replace
@@ -81,9 +97,10 @@ def _train(
 
     from ranker.ablation import ablate
     from ranker.train import train as train_ranker
+    from ranker.weights import SHIPPED
 
     from ..pipeline.dataset import generate
-    from .failures import failures_told
+    from .failures import RESUMED, failures_told
     from .progress import Bars
 
     console = Console(stderr=True)
@@ -91,13 +108,13 @@ def _train(
     def said(line: dict[str, Any]) -> None:
         _say(line, console)
 
-    with failures_told(out):
+    with failures_told(out, kept=RESUMED):
         config = replace(_recipe(recipe), seed=seed)
         if data == out / "clips" or not (data / "dataset.json").exists():
             with Bars(console) as bars:
                 generate(data, clips, seed, device.value, bars)
         run: Callable[..., dict[str, Any]] = ablate if ablation else train_ranker
-        measured = run(data, out, config, said)
+        measured = run(data, out, config, said, SHIPPED if start == _SHIPPED else start)
     if as_json:
         print(json.dumps(measured, indent=2))
     else:
@@ -127,7 +144,8 @@ def _say(line: dict[str, Any], console: Any) -> None:
         held = ", ".join(f"{k} {v:.0%}" for k, v in line["held_out"].items() if v is not None)
         console.print(
             f"epoch {line['epoch']}/{line['epochs']}  {line['size']} px  loss {line['loss']:.3f}"
-            f"  (binary {line['binary']:.3f}, class {line['class']:.3f}, contrast {line['contrast']:.3f})"
+            f"  (binary {line['binary']:.3f}, class {line['class']:.3f}, contrast {line['contrast']:.3f},"
+            f" hint {line['hint']:.3f})"
             f"  {held}  {line['seconds']:.0f} s",
             highlight=False,
         )

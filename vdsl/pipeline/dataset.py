@@ -106,6 +106,7 @@ def _stories(first: int, seed: int, device: str, size: int, processes: int) -> I
         yield from map(film, count(first))
         return
     context = multiprocessing.get_context("spawn")  # a forked process would share a renderer's threads
+    others = set(multiprocessing.active_children())
     places: Queue[int] = context.Queue()
     for place in range(processes):
         places.put(place)
@@ -121,7 +122,9 @@ def _stories(first: int, seed: int, device: str, size: int, processes: int) -> I
             "a process that films stories was ended from outside, perhaps for want of memory; "
             "start again to go on from what is there"
         ) from error
-    finally:
+    finally:  # what is still being filmed is not wanted any more
+        for process in set(multiprocessing.active_children()) - others:
+            process.terminate()
         pool.shutdown(cancel_futures=True)
 
 

@@ -1,0 +1,113 @@
+"""Where things are in a picture is part of what describes it, and what is known in numbers is judged by."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+import torch
+from ranker_clips import FRAMES, SIZE, TINY, WORDS, clip, model_config, write_clips
+
+from ranker.config import Phase, model_from_json, to_json
+from ranker.data import Dataset, ShardWriter, Words
+from ranker.errors import RankerError
+from ranker.model import Pool, ShotRanker, frame_times, normalised
+from ranker.train import take_over, train
+from ranker.weights import load_model, save_weights
+
+
+def test_moments_say_where_a_feature_is() -> None:
+    maps = torch.zeros(1, 2, 4, 8)
+    maps[0, 1, 3, 2] = 32.0  # the lowest row, third of eight columns
+    average, right, down = Pool(True)(maps).view(3, 2)
+    assert average.tolist() == [0.0, 1.0]
+    assert right.tolist() == [0.0, -0.375]
+    assert down.tolist() == [0.0, 0.75]
+    torch.testing.assert_close(Pool(False)(maps), average[None])
+
+
+def test_moments_mean_the_same_at_any_size() -> None:
+    small = torch.rand(3, 5, 4, 4)
+    large = small.repeat_interleave(3, 2).repeat_interleave(3, 3)
+    torch.testing.assert_close(Pool(True)(large), Pool(True)(small))
+
+
+def test_a_mirrored_picture_has_mirrored_moments() -> None:
+    maps = torch.rand(2, 3, 6, 6)
+    here, there = Pool(True)(maps).view(2, 3, 3), Pool(True)(maps.flip(3)).view(2, 3, 3)
+    torch.testing.assert_close(there, here * torch.tensor([1.0, -1.0, 1.0])[:, None])
+
+
+def test_weights_of_before_there_were_moments_still_describe_a_network() -> None:
+    values = to_json(model_config())
+    for name in ("moments", "measures", "motion"):
+        del values[name]
+    assert model_from_json(values) == model_config()
+
+
+def test_what_is_told_of_a_shot_is_learnt_and_judged_by(tmp_path: Path) -> None:
+    rng = np.random.default_rng(0)
+    with ShardWriter(tmp_path / "data", WORDS, (SIZE, SIZE), FRAMES) as writer:
+        for i in range(48):
+            good, movement, scale, angle = i % 2 == 0, i % 3, i // 2 % 2, i // 4 % 2
+            told = {"redness": float(good), "right_way": float((0, -1, 1)[movement])}
+            words = WORDS.movements[movement], WORDS.scales[scale], WORDS.angles[angle]
+            frames = clip(rng, good, movement, scale, angle)
+            writer.add(frames, good, *words, "g", 0.0 if good else 0.5, about={"hints": told})
+    train(tmp_path / "data", tmp_path / "out", replace(TINY, hint_weight=4.0))
+    model, data = load_model(tmp_path / "out" / "weights")[0], Dataset(tmp_path / "data")
+    assert model.config.measures == 2
+    frames = torch.from_numpy(np.stack([data.clip(i, range(FRAMES), SIZE) for i in range(48)]))
+    with torch.inference_mode():
+        out = model(normalised(frames), frame_times(model.config).expand(48, -1))
+        for column, known in enumerate(data.hints[1].T):
+            assert np.corrcoef(out.told[:, column], known)[0, 1] > 0.8
+        more = model.reasons(torch.tensor([[0.0, 0.0], [1.0, 0.0]]))
+    assert float((more[0] - more[1]).abs().max()) > 0.01  # what is told counts
+
+
+def test_a_training_starts_from_other_weights_as_far_as_they_fit(tmp_path: Path) -> None:
+    torch.manual_seed(1)
+    other = ShotRanker(model_config(moments=True))
+    card = save_weights(tmp_path / "other", other)
+    same = ShotRanker(model_config(moments=True, motion=8))
+    assert take_over(same, tmp_path / "other") == card.sha256
+    torch.testing.assert_close(same.angle.weight, other.angle.weight.half().float())
+
+    words = Words(("static", "zoom", "roll"), WORDS.scales, WORDS.angles)
+    changed = ShotRanker(replace(model_config(moments=True), movements=words.movements))
+    own = changed.movement.weight.clone()
+    take_over(changed, tmp_path / "other")
+    assert torch.equal(changed.movement.weight, own)  # its outputs are of other words
+    torch.testing.assert_close(changed.scale.weight, other.scale.weight.half().float())
+
+    plain = ShotRanker(model_config())
+    own = plain.scale.weight.clone()
+    take_over(plain, tmp_path / "other")
+    assert torch.equal(plain.scale.weight, own)  # reads less of a shot
+    torch.testing.assert_close(plain.backbone.conv1.weight, other.backbone.conv1.weight.half().float())
+    with pytest.raises(RankerError, match="nothing of these weights fits a resnet50"):
+        take_over(ShotRanker(model_config(backbone="resnet50")), tmp_path / "other")
+
+
+def test_a_training_that_goes_on_from_weights_says_so_and_is_ahead(tmp_path: Path) -> None:
+    write_clips(tmp_path / "data", 40)
+    train(tmp_path / "data", tmp_path / "first", TINY)
+    short = replace(TINY, phases=(Phase(1, SIZE, 2, 2, 16),))
+    logs: dict[str, list[dict]] = {"random": [], "ahead": []}
+    train(tmp_path / "data", tmp_path / "random", short, logs["random"].append)
+    train(tmp_path / "data", tmp_path / "ahead", short, logs["ahead"].append, tmp_path / "first" / "weights")
+    assert logs["ahead"][0]["class"] < 0.5 * logs["random"][0]["class"]
+    cards = [json.loads((tmp_path / n / "weights" / "config.json").read_text()) for n in ("first", "ahead")]
+    assert cards[1]["training"]["start"] == cards[0]["sha256"]
+
+
+def test_an_epoch_may_go_through_a_share_of_the_clips(tmp_path: Path) -> None:
+    write_clips(tmp_path / "data", 40)
+    lines: list[dict] = []
+    config = replace(TINY, phases=(Phase(2, SIZE, 2, 2, 8, share=0.4), Phase(1, SIZE, 2, 2, 8)))
+    train(tmp_path / "data", tmp_path / "out", config, lines.append)
+    assert [line["step"] for line in lines if "step" in line] == [2, 4, 9]

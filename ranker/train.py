@@ -178,11 +178,13 @@ def take_over(model: ShotRanker, folder: str | Path) -> str:
     ours = model.state_dict()
     fit = {k: v for k, v in other.state_dict().items() if k in ours and v.shape == ours[k].shape}
     words, others = model.config, other.config
+    if words.backbone != others.backbone:
+        raise RankerError(
+            f"{folder}: are weights of a {others.backbone}, and no {words.backbone} can start from them"
+        )
     for name in ("movement", "scale", "angle"):  # an output is of a word
         if getattr(words, f"{name}s") != getattr(others, f"{name}s"):
             fit = {k: v for k, v in fit.items() if not k.startswith(name)}
-    if not any(k.startswith("backbone.") for k in fit):
-        raise RankerError(f"{folder}: nothing of these weights fits a {words.backbone}")
     model.load_state_dict(ours | fit)
     return card.sha256
 

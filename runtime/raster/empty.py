@@ -89,7 +89,7 @@ class EmptySets:
             box, _ = glazing.boxes(cameras, np.zeros_like(moment), hidden, size)
             glazing.lay(passes, moments, layer, (cameras, moment, hidden, box), size, True, movers=False)
         self._final = self._buffer("empty_final", (pixels * 3,), np.uint8)
-        passes.even_out(layer, self._final[: pixels * 3], sets, size)
+        passes.even_out(loaded, moments, layer, (cameras, moment, sets), self._final[: pixels * 3], size)
         tiles = sets * -(-size[1] // self._reuse.BAND) * -(-size[0] // passes.run)
         self._reach = self._buffer("reach", (tiles * self._reuse.REACH,), np.float32)
         crew = self._crew(sets * -(-size[1] // self._reuse.BAND))

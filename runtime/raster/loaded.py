@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from .adjacency import beside
 from .bake import light_basis, occlusion_volume
 from .device import Backend
 from .lamps import lamp_volume
@@ -157,6 +158,8 @@ def _chart(
 def _uploaded(prepared: Prepared, scene: RenderScene, style: Style, backend: Backend) -> dict[str, Any]:
     up, volume = backend.upload, occlusion_volume(prepared.density)
     arrays = {name: up(getattr(prepared, name)) for name in UPLOADED}
+    corners, pieces = np.concatenate([prepared.vertices, prepared.rest]), prepared.info[:, [0, 2]]
+    arrays["beside"] = up(beside(corners, prepared.faces, pieces))
     arrays["joints"] = up(prepared.detail.scene.joints.astype(np.int32))
     arrays["weights"] = up(prepared.detail.scene.weights.astype(np.float32))
     arrays["light"] = up(packed_light(scene.light, style))

@@ -254,18 +254,31 @@ class Passes:
             named = (a["surface_object"], a["one_color"], first)
             self._ink.found(*seen, *named, *lookup, found, *kept, views, *size, *crew(lines))
 
-    def even_out(self, layer: Layer, color: NDArray[np.uint8], views: int, size: tuple[int, int]) -> None:
-        """Smoothed bytes into ``color``."""
+    def even_out(
+        self,
+        loaded: Loaded,
+        moments: Moments,
+        layer: Layer,
+        seen: tuple[Any, Any, int],
+        color: NDArray[np.uint8],
+        size: tuple[int, int],
+    ) -> None:
+        """Smoothed bytes into ``color``. seen: views, moments, how many views"""
+        a, scene, views = loaded.arrays, loaded.scene, seen[2]
+        counts = (scene.static_faces, loaded.static_vertices)
+        meshes = (a["vertices"], moments.position, a["faces"], a["beside"])
+        shapes = (*seen[:2], *meshes, *counts, layer.vis, layer.edge)
         final, runs = color.reshape(-1), (layer.marks, layer.level, self.linear, self.table)
         crew = self._backend.crew(views * size[1])
         if not self._backend.on_host or size[0] % self.run:
-            self._smooth.smooth_rows(layer.picture, *runs, final, views, *size, *crew)
+            self._smooth.smooth_rows(*shapes, layer.picture, *runs, final, views, *size, *crew)
             return
         run, kernels = self.run, self._smooth
         scratch = self._buffer("smoothing", (self._backend.threads * kernels.SCRATCH * run,), np.float32)
         # the buffer may be longer, from a picture of another width
         picture = layer.picture[: len(layer.picture) // run * run]
         self._smooth_runs(
+            *shapes,
             picture,
             picture.view(np.int32).reshape(-1, run),
             picture.view(np.uint8).reshape(-1, run),

@@ -223,7 +223,7 @@ class Renderer:
         if lens is not None:
             self._lens = self._lens or Lens(self._buffer, up)
             self._lens.blur(lens, layer.vis, layer.picture, (passes.linear, passes.table), size)
-        passes.even_out(layer, color, views, size)
+        passes.even_out(content, moments, layer, (view_, moment_, views), color, size)
         if objects is not None:
             passes.object_ids(content, layer, objects)
 

@@ -16,7 +16,7 @@ from ..mesh import Mesh
 from ..world import Light
 
 #: Rises whenever the same scene and views may give other pixels than before; kept results go by it.
-LOOK_VERSION: int = 17
+LOOK_VERSION: int = 18
 #: In ``fitting``: a person, or a thing that is carried about.
 LOOSE = -2
 #: In ``static_wall``: a face seen from its front only, such as a ceiling.

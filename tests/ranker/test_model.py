@@ -89,7 +89,7 @@ def test_a_training_starts_from_other_weights_as_far_as_they_fit(tmp_path: Path)
     take_over(plain, tmp_path / "other")
     assert torch.equal(plain.scale.weight, own)  # reads less of a shot
     torch.testing.assert_close(plain.backbone.conv1.weight, other.backbone.conv1.weight.half().float())
-    with pytest.raises(RankerError, match="nothing of these weights fits a resnet50"):
+    with pytest.raises(RankerError, match="of a resnet18, and no resnet50"):
         take_over(ShotRanker(model_config(backbone="resnet50")), tmp_path / "other")
 
 

@@ -1,5 +1,7 @@
 """Smoothing: sixteen pixels at a time as one by one, and what it does to a stair-step."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from numpy.typing import NDArray
@@ -34,17 +36,17 @@ def smoothed(
     passes = Passes(start("cpu"), lambda name, shape, dtype: aligned(shape, dtype), Style())
     out = on_lines(np.full(colors.size, 7, np.uint8)).reshape(colors.shape)
     picture = on_lines(packed(colors).reshape(-1))
-    if by_runs:
-        none = np.zeros(1, np.int32)
-        layer = Layer(none, picture, none, none, marks.reshape(-1), level.reshape(-1))
-        passes.even_out(layer, out, views, (width, height))
-    else:
-        from runtime.raster.kernels.smooth import smooth_rows
-
-        tables = (passes.linear, passes.table)
-        flat = out.reshape(-1)
-        extent, crew = (views, width, height), start("cpu").crew(views * height)
-        smooth_rows(picture, marks.reshape(-1), level.reshape(-1), *tables, flat, *extent, *crew)
+    # nothing is seen in the pixels that could tell of edges
+    none, nowhere = np.zeros(1, np.int32), np.zeros(picture.shape, np.uint64)
+    layer = Layer(nowhere, picture, np.zeros_like(picture), none, marks.reshape(-1), level.reshape(-1))
+    arrays = {"vertices": np.zeros((3, 3), np.float32), "faces": np.zeros((1, 3), np.int32)}
+    arrays["beside"] = arrays["faces"] - 1
+    loaded = SimpleNamespace(arrays=arrays, static_vertices=3, scene=SimpleNamespace(static_faces=1))
+    moments = SimpleNamespace(position=np.zeros((1, 1, 3), np.float32))
+    seen = (np.ones((views, 16), np.float32), np.zeros(views, np.int32), views)
+    if not by_runs:
+        passes.run = width + 1  # no row is whole runs
+    passes.even_out(loaded, moments, layer, seen, out, (width, height))
     return out
 
 

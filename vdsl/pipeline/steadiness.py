@@ -1,7 +1,9 @@
 """How steady pictures are under a moving camera.
 
 Each frame is compared with the one before, carried over by depth: what a surface showed there, it should
-show here. Assumes that nothing but the camera moves. What came into view only now is left out.
+show here. Carrying over by part of a pixel blurs, which is no change of the picture; so the earlier frame is
+carried half of that part on, the later one as far back, and both are blurred alike. Assumes that nothing but
+the camera moves. What came into view only now is left out.
 """
 
 from __future__ import annotations
@@ -92,11 +94,19 @@ def _changed(
     safe = np.where(ahead, z, 1.0)
     u = before[14] + before[12] * (offset @ before[3:6]) / safe - 0.5
     v = before[15] - before[13] * (offset @ before[6:9]) / safe - 0.5
-    known = there & ahead & (u >= 0) & (v >= 0) & (u <= width - 1) & (v <= height - 1)
-    at = (u.astype(np.float32), v.astype(np.float32))
-    carried = cv2.remap(color[0].astype(np.float32), *at, cv2.INTER_LINEAR)
+    known = there & ahead & (u >= 1) & (v >= 1) & (u <= width - 2) & (v <= height - 2)
     # it must have been in view: the pixel it comes from shows the same surface
-    was = cv2.remap(np.minimum(depth[0], 1e6), *at, cv2.INTER_NEAREST)
+    was = _taken(np.minimum(depth[0], 1e6), u, v, cv2.INTER_NEAREST)
     known &= np.abs(was - z) < _SAME_DEPTH * z
-    apart = np.abs(carried - color[1]).max(axis=-1)
-    return (apart > SEEN) & known, known
+    right, down = ((d - np.round(d)) / 2 for d in (u - (x - 0.5), v - (y - 0.5)))
+    earlier = _taken(color[0], u - right, v - down, cv2.INTER_LINEAR)
+    later = _taken(color[1], x - 0.5 - right, y - 0.5 - down, cv2.INTER_LINEAR)
+    return (np.abs(earlier - later).max(axis=-1) > SEEN) & known, known
+
+
+def _taken(
+    picture: NDArray[np.generic], x: NDArray[np.float64], y: NDArray[np.float64], how: int
+) -> NDArray[np.float32]:
+    """What a picture shows at places [H, W] in pixels."""
+    places = (x.astype(np.float32), y.astype(np.float32))
+    return np.asarray(cv2.remap(picture.astype(np.float32), *places, how), np.float32)

@@ -54,6 +54,18 @@ def part3(a: ti.template(), i, k):
     return vec3(a[i, k], a[i, k + 1], a[i, k + 2])
 
 
+@ti.func
+def rays(view: ti.template(), n, y):
+    """The eye of a view, the ray through pixel 0 of row ``y``, and what each pixel adds to it."""
+    step = part3(view, n, 3) / view[n, 12]
+    first = (
+        part3(view, n, 9)
+        + part3(view, n, 6) * ((view[n, 15] - (y + 0.5)) / view[n, 13])
+        + step * (0.5 - view[n, 14])
+    )
+    return part3(view, n, 0), first, step
+
+
 @ti.kernel
 def skin(
     palette: f4,

@@ -11,7 +11,7 @@ import taichi as ti
 
 from . import crew
 from .gather import EVEN, V, fv
-from .geometry import f1, f2, greater, i1, part3, triangle, u32s, u64s, vec3
+from .geometry import f1, f2, greater, i1, rays, triangle, u32s, u64s, vec3
 from .paint import RUN, SHADE, SHEET, scaled
 from .pattern import GRAINED, Alone, pattern, value_noise
 from .spans import qv, uv
@@ -119,18 +119,6 @@ def surface(sheet: ti.template(), t, eye, first, step, x, scale):
     cosine = ti.abs(plane.dot(ray)) / ray.norm()
     slant = 1.0 / (greater(ti.sqrt(cosine), 0.15) * scale)
     return plane, near, turn, slant / (near + ti.cast(x, ti.f32) * turn)
-
-
-@ti.func
-def rays(view: ti.template(), n, y):
-    """The eye of a view, the ray through pixel 0 of row ``y``, and what each pixel adds to it."""
-    step = part3(view, n, 3) / view[n, 12]
-    first = (
-        part3(view, n, 9)
-        + part3(view, n, 6) * ((view[n, 15] - (y + 0.5)) / view[n, 13])
-        + step * (0.5 - view[n, 14])
-    )
-    return part3(view, n, 0), first, step
 
 
 @ti.func

@@ -1,9 +1,9 @@
 """Smoothing: stair-steps beside marked pixels evened out, then bytes; and object ids.
 
 Finds the direction of the luma edge through a pixel, walks along it to both ends, and takes the line between
-the ends as the true edge, as morphological anti-aliasing does (Reshetov 2009). ``smooth_rows`` goes pixel by
-pixel; ``smooth_runs`` does the same on the host, all but the walking by vectors of sixteen (see ``gather``),
-and gives the same bytes.
+the ends as the true edge, as morphological anti-aliasing does (Reshetov 2009); where triangles tell where the
+edge passes, they are believed instead (see ``edges``). ``smooth_rows`` goes pixel by pixel; ``smooth_runs``
+does the same on the host, much of it by vectors of sixteen (see ``gather``), and gives the same bytes.
 """
 
 # mypy: ignore-errors
@@ -12,12 +12,14 @@ and gives the same bytes.
 import taichi as ti
 
 from . import crew
+from .edges import moved, scaled_down
 from .gather import LANES, I, V, fv, iv
-from .geometry import f1, greater, i1, lesser, u8s, u32s
+from .geometry import f1, f2, f3, greater, i1, i2, lesser, part3, rays, u8s, u32s, u64s
 from .paint import RUN as BLOCK
 from .paint import SMOOTH, decode
 
 SEARCH = 9  # pixels looked along an edge, either way
+LEAST = 0.004  # of a pixel that comes from others: less does not show
 VISIBLE = 0.25  # of a step of luma: a smaller change is not made
 TWO_STEPS, ONE_STEP = 0.32, 0.401  # more than the share of an edge whose nearer end is that far away
 SCRATCH = 5  # vectors that a worker of smooth_runs needs
@@ -139,8 +141,95 @@ def other_side(at, width, kind):
 
 
 @ti.func
-def smoothed(x, y, at, width, height, src: ti.template(), linear: ti.template(), table: ti.template()):
-    """A pixel blended over a stair-step edge by how far the true edge passes from its centre."""
+def drawn_to_edges(
+    x,
+    y,
+    at,
+    width,
+    height,
+    m,
+    eye,
+    first,
+    step,
+    down,
+    src: ti.template(),
+    edge: ti.template(),
+    vis: ti.template(),
+    vertices: ti.template(),
+    position: ti.template(),
+    faces: ti.template(),
+    joined: ti.template(),
+    counts,
+    linear: ti.template(),
+    table: ti.template(),
+):
+    """A pixel moved with the edges near it, and whether these are known.
+
+    m: moment of the picture; eye, first, step, down: the rays of its row (see ``geometry.rays``)
+    """
+    ray = first + step * ti.cast(x, ti.f32)
+    a, b, beside = moved(
+        at, 1, x, width - 1 - x, m, eye, ray, step, down, edge, vis, vertices, position, faces, joined, counts
+    )
+    c, d, upright = moved(
+        at,
+        width,
+        y,
+        height - 1 - y,
+        m,
+        eye,
+        ray,
+        down,
+        step,
+        edge,
+        vis,
+        vertices,
+        position,
+        faces,
+        joined,
+        counts,
+    )
+    out = src[at]
+    if a + b + c + d > LEAST:
+        own = decode(out, linear)
+        q = scaled_down(a, b, c, d)
+        mixed = own
+        if a > 0:
+            mixed += (decode(src[at - 1], linear) - own) * (a * q)
+        if b > 0:
+            mixed += (decode(src[at + 1], linear) - own) * (b * q)
+        if c > 0:
+            mixed += (decode(src[at - width], linear) - own) * (c * q)
+        if d > 0:
+            mixed += (decode(src[at + width], linear) - own) * (d * q)
+        out = reencode(mixed, table)
+    return out, beside or upright
+
+
+@ti.func
+def smoothed(
+    x,
+    y,
+    at,
+    width,
+    height,
+    moment,
+    eye,
+    first,
+    step,
+    down,
+    src: ti.template(),
+    edge: ti.template(),
+    vis: ti.template(),
+    vertices: ti.template(),
+    position: ti.template(),
+    faces: ti.template(),
+    joined: ti.template(),
+    counts,
+    linear: ti.template(),
+    table: ti.template(),
+):
+    """A pixel blended over an edge by how far the true edge passes from its centre."""
     c = src[at]
     out = c
     if 0 < x < width - 1 and 0 < y < height - 1:
@@ -150,20 +239,44 @@ def smoothed(x, y, at, width, height, src: ti.template(), linear: ti.template(),
         low = lesser(lesser(lesser(n, s), lesser(w, e)), m)
         high = greater(greater(greater(n, s), greater(w, e)), m)
         if high - low > enough(high):
-            nw, ne = number(src[at - width - 1]), number(src[at - width + 1])
-            sw, se = number(src[at + width - 1]), number(src[at + width + 1])
-            share = lone_share(n, s, w, e, nw, ne, sw, se, m, high - low, 1.0)
-            flat, steep = flatness(n, s, w, e, nw, ne, sw, se, m)
-            kind = UPRIGHT if steep > flat else 0
-            before, after = ti.select(steep > flat, w, n), ti.select(steep > flat, e, s)
-            other = after
-            if distance(before, m) >= distance(after, m):
-                kind |= BACK
-                other = before
-            own, beyond = ti.cast(m, ti.i32), ti.cast(other, ti.i32)
-            share = greater(share, edge_share(x, y, at, width, height, kind, own, beyond, src))
-            if share * distance(other, m) > VISIBLE:
-                out = blended(c, src[other_side(at, width, kind)], share, linear, table)
+            out, known = drawn_to_edges(
+                x,
+                y,
+                at,
+                width,
+                height,
+                moment,
+                eye,
+                first,
+                step,
+                down,
+                src,
+                edge,
+                vis,
+                vertices,
+                position,
+                faces,
+                joined,
+                counts,
+                linear,
+                table,
+            )
+            if not known:
+                out = c
+                nw, ne = number(src[at - width - 1]), number(src[at - width + 1])
+                sw, se = number(src[at + width - 1]), number(src[at + width + 1])
+                share = lone_share(n, s, w, e, nw, ne, sw, se, m, high - low, 1.0)
+                flat, steep = flatness(n, s, w, e, nw, ne, sw, se, m)
+                kind = UPRIGHT if steep > flat else 0
+                before, after = ti.select(steep > flat, w, n), ti.select(steep > flat, e, s)
+                other = after
+                if distance(before, m) >= distance(after, m):
+                    kind |= BACK
+                    other = before
+                own, beyond = ti.cast(m, ti.i32), ti.cast(other, ti.i32)
+                share = greater(share, edge_share(x, y, at, width, height, kind, own, beyond, src))
+                if share * distance(other, m) > VISIBLE:
+                    out = blended(c, src[other_side(at, width, kind)], share, linear, table)
     return out
 
 
@@ -190,6 +303,16 @@ def near_marks(line, y, b, blocks, height, marks: ti.template()):
 
 @ti.kernel
 def smooth_rows(
+    view: f2,
+    moment: i1,
+    vertices: f2,
+    position: f3,
+    faces: i2,
+    joined: i2,
+    static_faces: ti.i32,
+    static_vertices: ti.i32,
+    vis: u64s,
+    edge: u32s,
     src: u32s,
     marks: i1,
     level: i1,
@@ -208,6 +331,9 @@ def smooth_rows(
         line = crew.task(slot, views * height, queue, host)
         if line < views * height:
             y = line % height
+            eye, first, step = rays(view, line // height, y)
+            down = part3(view, line // height, 6) * (-1.0 / view[line // height, 13])
+            counts = ti.Vector([static_faces, static_vertices])
             blocks = (width + BLOCK - 1) // BLOCK
             for b in range(blocks):
                 if level[line * blocks + b] < SMOOTH:
@@ -217,7 +343,28 @@ def smooth_rows(
                     at = line * width + x
                     c = src[at]
                     if bits & 1:
-                        c = smoothed(x, y, at, width, height, src, linear, table)
+                        c = smoothed(
+                            x,
+                            y,
+                            at,
+                            width,
+                            height,
+                            moment[line // height],
+                            eye,
+                            first,
+                            step,
+                            down,
+                            src,
+                            edge,
+                            vis,
+                            vertices,
+                            position,
+                            faces,
+                            joined,
+                            counts,
+                            linear,
+                            table,
+                        )
                     bits >>= 1
                     final[3 * at] = ti.cast(c & 0xFF, ti.u8)
                     final[3 * at + 1] = ti.cast((c >> 8) & 0xFF, ti.u8)
@@ -279,6 +426,16 @@ def pack(k, from_bytes: ti.template(), to_bytes: ti.template()):
 
 @ti.kernel
 def smooth_runs(
+    view: f2,
+    moment: i1,
+    vertices: f2,
+    position: f3,
+    faces: i2,
+    joined: i2,
+    static_faces: ti.i32,
+    static_vertices: ti.i32,
+    vis: u64s,
+    edge: u32s,
     src: u32s,
     row: iv,
     quarter: bv,
@@ -313,6 +470,9 @@ def smooth_runs(
         line = crew.task(slot, views * height, queue, True)
         if line < views * height:
             y = line % height
+            eye, first, step = rays(view, line // height, y)
+            down = part3(view, line // height, 6) * (-1.0 / view[line // height, 13])
+            counts = ti.Vector([static_faces, static_vertices])
             for b in range(runs):
                 k = line * runs + b
                 if level[k] < SMOOTH:
@@ -370,22 +530,48 @@ def smooth_runs(
                 scratch[own + 3] = alone
                 of = ti.select(steep > flat, V(UPRIGHT), V(0.0)) + ti.select(back >= 0.0, V(BACK), V(0.0))
                 scratch[own + 4] = of + m * 4.0 + other * 1024.0
-                bits &= walks | seen
+                stepped = walks | seen
                 while bits != 0:
                     i = 31 - ti.math.clz(bits)
                     bits ^= 1 << i
                     at = begin + i
-                    much = found[(own + 3) * LANES + i]
-                    what = ti.cast(found[(own + 4) * LANES + i], ti.i32)
-                    here, beyond = (what >> 2) & 255, what >> 10
-                    if (walks >> i) & 1:
-                        x = b * LANES + i
-                        much = greater(much, edge_share(x, y, at, width, height, what, here, beyond, src))
-                    if much * ti.cast(distance(beyond, here), ti.f32) > VISIBLE:
-                        c = blended(src[at], src[other_side(at, width, what)], much, linear, table)
-                        final[3 * at] = ti.cast(c & 0xFF, ti.u8)
-                        final[3 * at + 1] = ti.cast((c >> 8) & 0xFF, ti.u8)
-                        final[3 * at + 2] = ti.cast((c >> 16) & 0xFF, ti.u8)
+                    x = b * LANES + i
+                    c, known = drawn_to_edges(
+                        x,
+                        y,
+                        at,
+                        width,
+                        height,
+                        moment[line // height],
+                        eye,
+                        first,
+                        step,
+                        down,
+                        src,
+                        edge,
+                        vis,
+                        vertices,
+                        position,
+                        faces,
+                        joined,
+                        counts,
+                        linear,
+                        table,
+                    )
+                    if not known:
+                        c = src[at]
+                        if (stepped >> i) & 1:
+                            much = found[(own + 3) * LANES + i]
+                            what = ti.cast(found[(own + 4) * LANES + i], ti.i32)
+                            here, beyond = (what >> 2) & 255, what >> 10
+                            if (walks >> i) & 1:
+                                share = edge_share(x, y, at, width, height, what, here, beyond, src)
+                                much = greater(much, share)
+                            if much * ti.cast(distance(beyond, here), ti.f32) > VISIBLE:
+                                c = blended(c, src[other_side(at, width, what)], much, linear, table)
+                    final[3 * at] = ti.cast(c & 0xFF, ti.u8)
+                    final[3 * at + 1] = ti.cast((c >> 8) & 0xFF, ti.u8)
+                    final[3 * at + 2] = ti.cast((c >> 16) & 0xFF, ti.u8)
 
 
 @ti.kernel

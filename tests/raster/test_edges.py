@@ -1,0 +1,112 @@
+"""Edges are where they are to a part of a pixel: triangles tell, and surfaces are followed to their end."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+from raster_scenes import LIGHT, box, looking, room, scene, sphere, still
+
+from runtime.mesh import Mesh
+from runtime.raster.adjacency import beside
+from runtime.raster.film import to_linear
+from runtime.raster.passes import Passes
+from runtime.raster.renderer import Renderer
+from runtime.raster.types import STYLES, Style
+
+EVEN = replace(LIGHT, sun_color=(0.0, 0.0, 0.0), sky=(0.8, 0.8, 0.8), ground=(0.8, 0.8, 0.8))
+BARE = Style("bare", outline=False, tones=0, shadows=False, occlusion=False)
+
+
+def test_triangles_of_a_box_are_joined_at_all_edges() -> None:
+    mesh = box((0, 0, 0), (1, 2, 3))
+    joined = beside(mesh.vertices, mesh.faces, np.zeros(12, np.int32))
+    assert (joined >= 0).all()  # though every side has corners of its own
+    for face, others in enumerate(joined):
+        for edge, other in enumerate(others):
+            assert face in joined[other]
+            ends = mesh.vertices[mesh.faces[face, [edge, (edge + 1) % 3]]]
+            theirs = mesh.vertices[mesh.faces[other]]
+            assert all((np.abs(theirs - end).max(axis=1) < 1e-9).any() for end in ends)
+
+
+def test_only_triangles_of_a_piece_are_joined_and_no_more_than_two_at_an_edge() -> None:
+    vertices = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, -1, 0], [0, 0, 1]], float)
+    fan = np.array([[0, 1, 2], [1, 0, 3], [0, 1, 4]], np.int32)
+    assert beside(vertices, fan[:2], np.zeros(2, np.int32)).tolist() == [[1, -1, -1], [0, -1, -1]]
+    assert (beside(vertices, fan[:2], np.array([0, 1], np.int32)) == -1).all()
+    assert (beside(vertices, fan, np.zeros(3, np.int32)) == -1).all()
+    assert beside(vertices, fan[:0], np.zeros(0, np.int32)).shape == (0, 3)
+    flat = np.array([[0, 1, 1], [1, 0, 2]], np.int32)  # one without area joins nothing to itself
+    assert (beside(vertices, flat, np.zeros(2, np.int32)) != np.arange(2)[:, None]).all()
+
+
+def covered(drawer: Renderer, shift: float, axis: int, side: int) -> NDArray[np.float64]:
+    """The light along a line across a thing in front of what is nearly black, 1 in its middle."""
+    at = [0.0, -4.0, 0.0]
+    at[(0, 2)[axis]] = shift
+    target = (at[0], 0.0, at[2])
+    views = looking([(at[0], at[1], at[2])], [target], sensor=(36.0, 36.0))
+    color = drawer.render(still(1), views, (side, side)).color[0, ..., 1]
+    line = color[side // 2] if axis == 0 else color[:, side // 2]
+    light = to_linear(line / 255.0)
+    return np.asarray((light - light.min()) / (light[side // 2] - light.min()))
+
+
+@pytest.mark.parametrize("axis", [0, 1])
+@pytest.mark.parametrize(
+    "thing",
+    [
+        box((-0.5, 0, -0.5), (0.5, 0.4, 0.5), (0.9, 0.9, 0.9)),
+        sphere(
+            (0, 0, 0), (0.5, 0.3, 0.5), (0.9, 0.9, 0.9), rings=64
+        ),  # at whose outline triangles are narrow
+    ],
+    ids=["box", "ball"],
+)
+def test_an_outline_moves_by_parts_of_a_pixel(thing: Mesh, axis: int) -> None:
+    """Carried over two pixels in small steps, a thing is as wide everywhere, and moves as far each time."""
+    drawer = Renderer("cpu", BARE)
+    drawer.load(scene([box((-9, 5, -9), (9, 6, 9), (0.01, 0.01, 0.01)), thing], [], light=EVEN))
+    side, shifts = 96, np.linspace(0, 0.08, 13)
+    lines = np.array([covered(drawer, shift, axis, side) for shift in shifts])
+    width = lines.sum(axis=1)
+    assert np.ptp(width) < 0.3
+    places = (lines * np.arange(side)).sum(axis=1) / width
+    moved = np.abs(np.diff(places))
+    assert moved.min() > 0.3 * moved.mean()
+    assert moved.max() < 2.0 * moved.mean()
+
+
+@pytest.fixture
+def by_both(monkeypatch: pytest.MonkeyPatch) -> list[tuple[NDArray[Any], NDArray[Any]]]:
+    """What smoothing by runs made of each picture, and what it makes of it pixel by pixel."""
+    seen: list[tuple[NDArray[Any], NDArray[Any]]] = []
+    real = Passes.even_out
+
+    def both(self: Passes, loaded, moments, layer, views, color, size) -> None:  # type: ignore[no-untyped-def]
+        real(self, loaded, moments, layer, views, color, size)
+        other, run = np.copy(color), self.run
+        self.run = size[0] + 1  # no row is whole runs
+        real(self, loaded, moments, layer, views, other, size)
+        self.run = run
+        seen.append((np.copy(color), other))
+
+    monkeypatch.setattr(Passes, "even_out", both)
+    return seen
+
+
+@pytest.mark.parametrize("style", ["board", "clay"])
+def test_runs_of_sixteen_are_drawn_to_edges_as_single_pixels_are(
+    style: str, by_both: list[tuple[NDArray[Any], NDArray[Any]]]
+) -> None:
+    drawer = Renderer("cpu", STYLES[style])
+    drawer.load(room())
+    views = looking([(2.6, -1.8, 1.5), (-1.5, -1.9, 1.2)], [(1.7, 1.8, 1.0), (0.4, 1.0, 0.8)])
+    drawer.render(still(2), views, (160, 96))
+    for quick, slow in by_both:
+        assert np.array_equal(quick, slow)
+    assert by_both

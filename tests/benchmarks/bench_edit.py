@@ -1,7 +1,10 @@
-"""From saving an edited line to draft and films: python -m tests.benchmarks.bench_edit [--rank geometry]
+"""From saving an edited line to draft, film and all takes:
 
-Watches a copy of a story, changes one line once everything is made and loaded, and prints when the draft and
-the whole build were in their place, by the clock and in processor time, and which shots were made anew.
+    python -m tests.benchmarks.bench_edit [--rank geometry]
+
+Watches a copy of a story, changes one line once everything is made and loaded, and prints when the draft, the
+film of first takes and the other takes were in their place, by the clock and in processor time, and which
+shots were made anew.
 What is made first is taken from the results kept for the user, or takes as long as a compilation does. How
 quick the machine is by itself is told by what OpenGL on its processor draws of the same scene.
 """
@@ -63,13 +66,13 @@ def measure(folder: Path, before: str, after: str, rank: str) -> None:
         files = times(build)
         begun = time.perf_counter(), time.process_time()
         story.write_text(after, "utf-8")
-        for state in ("draft", "done"):
+        for state in ("draft", "firsts", "done"):
             told = until(news, state)
             wall, busy = time.perf_counter() - begun[0], time.process_time() - begun[1]
             print(f"{state:<6} after {wall:5.2f} s ({busy:5.2f} s of processor time): {told.message}")
-        assert told.result is not None
-        for stage in told.result.report.stages:
-            print(f"    {stage.name:<8} {stage.seconds:5.2f} s  {stage.count} {stage.unit}")
+            assert told.result is not None
+            for stage in told.result.report.stages:
+                print(f"    {stage.name:<8} {stage.seconds:5.2f} s  {stage.count} {stage.unit}")
         now = times(build)
         changed = sorted({path.parts[0] for path in now if now[path] != files.get(path)})
         same = sum(now[path] == files.get(path) for path in now)

@@ -225,6 +225,24 @@ def test_a_draft_is_stills_of_what_changed(project: Path) -> None:
     assert (project / "build" / "animatic.mp4").exists()
 
 
+def test_first_takes_are_filmed_alone_and_kept_for_the_whole(project: Path) -> None:
+    made(project)
+    text = SCRIPT.replace("(push medium", "(pull medium")
+    firsts, worked = made(project, text, firsts=True)
+    assert (firsts.build.draft, firsts.build.waiting) == (False, 1)
+    assert "film" in worked
+    assert [len(s.takes) for s in firsts.build.shots] == [2, 1, 2]
+    assert (project / "build" / "animatic.mp4").exists()
+    film = (project / "build" / "shots" / "room-anna-nod" / "take-1.mp4").stat().st_mtime_ns
+    whole, worked = made(project, text)
+    assert (whole.build.waiting, "propose" in worked, "film" in worked) == (0, True, True)
+    assert [len(s.takes) for s in whole.build.shots] == [2, 2, 2]
+    assert whole.build.shots[1].takes[0].key == firsts.build.shots[1].takes[0].key
+    assert (project / "build" / "shots" / "room-anna-nod" / "take-1.mp4").stat().st_mtime_ns == film
+    again, worked = made(project, text, firsts=True)
+    assert (again.build.waiting, worked) == (0, [])
+
+
 # -- the store ----------------------------------------------------------------------------------
 
 

@@ -1,4 +1,4 @@
-"""``vdsc watch``: a draft, then the films; mistakes; saves while something is made."""
+"""``vdsc watch``: a draft, first takes, then the others; mistakes; saves while something is made."""
 
 import json
 import threading
@@ -93,12 +93,15 @@ def kept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
 def test_a_draft_comes_first_and_a_mistake_leaves_the_last_build(tmp_path: Path) -> None:
     with watched(tmp_path) as desk:
-        draft, done = desk.until("draft"), desk.until("done")
-        assert (draft.revision, done.revision) == (1, 2)
+        draft, firsts, done = desk.until("draft"), desk.until("firsts"), desk.until("done")
+        assert (draft.revision, firsts.revision, done.revision) == (1, 2, 3)
+        assert firsts.result is not None
+        assert [len(shot.takes) for shot in firsts.result.build.shots] == [1, 1]
+        assert all(shot.takes[0].media.video for shot in firsts.result.build.shots)
         assert draft.result is not None
         assert draft.result.build.draft
         assert desk.status()["state"] == "done"
-        assert desk.status()["revision"] == 2
+        assert desk.status()["revision"] == 3
         good = (desk.out / "storyboard.json").read_bytes()
 
         desk.script.write_text(SCRIPT.replace("(anna wave)", "(anna wavve)"), "utf-8")
@@ -106,7 +109,7 @@ def test_a_draft_comes_first_and_a_mistake_leaves_the_last_build(tmp_path: Path)
         assert wrong.report is not None
         assert wrong.report.errors[0].span.text == "wavve"
         status = desk.status()
-        assert (status["schema"], status["state"], status["revision"]) == ("vds.status/1", "error", 2)
+        assert (status["schema"], status["state"], status["revision"]) == ("vds.status/1", "error", 3)
         (finding,) = status["diagnostics"]  # type: ignore[misc]
         assert (finding["line"], finding["code"]) == (7, "VDS071")
         assert (desk.out / "storyboard.json").read_bytes() == good
@@ -135,7 +138,7 @@ def test_what_is_written_before_the_first_build_is_in_nobodys_way(tmp_path: Path
     (tmp_path / "build").mkdir()
     (tmp_path / "build" / "status.json").write_text("{}")
     with watched(tmp_path) as desk:
-        assert desk.until("done").revision == 2
+        assert desk.until("done").revision == 3
 
 
 def test_settings_beside_the_script_are_read_anew(tmp_path: Path) -> None:

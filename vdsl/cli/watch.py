@@ -66,7 +66,7 @@ def watch(
 
 
 def _tell(news: News, file: Path) -> None:
-    if news.report is not None and news.state != "draft":
+    if news.report is not None and news.state not in ("draft", "firsts"):
         print_report(news.report, file=str(file))
     if news.state == "error":
         at = "; the last good build stays" if news.revision else ""

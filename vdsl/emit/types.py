@@ -170,6 +170,7 @@ class Build:
     chosen for the sequence; trades: what was given up for it
     made_with: versions that proposals and pictures go by, as (name, version)
     draft: whether some takes are stills alone, put in order by geometry, until their films are made
+    waiting: how many shots have takes that are still to be filmed, and not shown yet
     grounds: the places of the storyboard's scenes from above, or none where no plans are wanted
     arrows: whether the contact sheet shows what moves
     """
@@ -182,6 +183,7 @@ class Build:
     trades: tuple[Trade, ...] = ()
     made_with: tuple[tuple[str, str], ...] = ()
     draft: bool = False
+    waiting: int = 0
     grounds: tuple[Ground, ...] = ()
     arrows: bool = True
 

@@ -226,7 +226,7 @@ class _Filming:
         """The whole film, its takes in the run's folder."""
         run, board = self.run, self.run.storyboard
         plan = self._edit() if run.options.edit and self._quick is None else None
-        reel, film = Reel(), list[BuiltShot]()
+        reel, film, waiting = Reel(), list[BuiltShot](), 0
         joined: StoryLine | None = None  # the first shot of a line that has a take joins it to the last line
         for line, shot in [(each, shot) for each in board.lines for shot in each.shots]:
             transition = CUT if joined is line else line.transition
@@ -244,6 +244,7 @@ class _Filming:
                 reel.add(line, shot, [], [], [])
             start = partial(start_of_next, tuple(film), transition)
             takes = self._takes(line, shot, shown, picked is not None, lambda n, s=start: s(n, board.fps))  # type: ignore[misc]
+            waiting += len(takes) < len(shown) and self._quick is None
             rejected = judged.rejected_for(order)
             film.append(self._built(line, shot, judged, takes, rejected, transition))
             joined = line if takes else joined
@@ -256,6 +257,7 @@ class _Filming:
             plan.trades if plan else (),
             made_with(),
             any(take.media.sketched for shot in film for take in shot.takes),
+            waiting,
             grounds=self._grounds(),
             arrows=run.options.arrows,
         )
@@ -326,10 +328,16 @@ class _Filming:
         picked: bool,
         start: Callable[[int], int],
     ) -> tuple[BuiltTake, ...]:
-        """The takes of a shot, best first; in a draft a still of the best one, if any has no film yet."""
-        if self._quick is not None and not all(crew.film_is_kept(line, shot, kept) for crew, kept in shown):
-            crew, kept = shown[0]
-            return (crew.sketch(line, shot, kept, picked),)
+        """The takes of a shot, best first; in a draft a still of the best one, if any has no film yet.
+
+        Where first takes are wanted, of a shot with films still to be made the first one alone.
+        """
+        quick = self._quick is not None or self.run.options.firsts
+        if quick and not all(crew.film_is_kept(line, shot, kept) for crew, kept in shown):
+            if self._quick is not None:
+                crew, kept = shown[0]
+                return (crew.sketch(line, shot, kept, picked),)
+            shown = shown[:1]
         return tuple(
             crew.film(line, shot, kept, rank, picked and rank == 1, start)
             for rank, (crew, kept) in enumerate(shown, start=1)

@@ -41,7 +41,19 @@ _FILES = ("pipeline/acts", "pipeline/chosen", "pipeline/edit", "pipeline/filming
 _ENDINGS = (".py", ".lark", ".vds")
 #: Options that decide neither what is proposed nor what is drawn, or are counted where they do.
 _ELSEWHERE = frozenset(
-    {"settings", "weights", "rank", "burn_in", "guides", "edit", "cache", "draft", "arrows", "taste"}
+    {
+        "settings",
+        "weights",
+        "rank",
+        "burn_in",
+        "guides",
+        "edit",
+        "cache",
+        "draft",
+        "firsts",
+        "arrows",
+        "taste",
+    }
 ) | {"further", "shutter"}
 
 

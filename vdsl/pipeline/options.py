@@ -13,7 +13,7 @@ from ..lang import Settings
 JUDGES = ("discriminator", "geometry")
 DEVICES = ("auto", "cpu", "cuda", "vulkan")
 #: What a build is not made by: how it was come by.
-_PASSING = frozenset({"cache", "draft", "further"})
+_PASSING = frozenset({"cache", "draft", "firsts", "further"})
 
 
 @dataclass(frozen=True)
@@ -27,6 +27,7 @@ class Options:
     edit: choose the first takes for the sequence, so that cuts keep to the rules
     cache: take results of earlier runs, and keep those of this one
     draft: make no films, but stills of the best takes by geometry where films are not kept from earlier
+    firsts: film of each shot the first take alone, and what others are kept from earlier
     guides: what is drawn over every picture of the takes
     arrows: draw on the contact sheet what moves
     further: shots by their ids of which further takes are wanted
@@ -41,6 +42,7 @@ class Options:
     edit: bool = False
     cache: bool = True
     draft: bool = False
+    firsts: bool = False
     guides: Guides = NO_GUIDES
     arrows: bool = True
     taste: Path | None = None

@@ -1,4 +1,4 @@
-"""Compiles a script whenever it, or what it draws on, is saved: first a draft, then the whole.
+"""Compiles a script whenever it, or what it draws on, is saved: a draft, then first takes, then the others.
 
 One process stays: renderers, judge and staged scenes are kept from one compilation to the next. Assumes that
 nobody else compiles into the folder meanwhile (who does, loses nothing). Guarantees that the folder holds the
@@ -40,8 +40,9 @@ _STEP, _DEBOUNCE = 40, 300
 
 @dataclass(frozen=True, eq=False)
 class News:
-    """What happened. state: ``building``, ``draft``, ``done`` or ``error``; revision: counts the builds
+    """What happened. state: ``building``, ``draft``, ``firsts``, ``done`` or ``error``
 
+    revision: counts the builds
     message: in words; result: of a build that is in its place now; report: what was found wrong
     """
 
@@ -127,6 +128,8 @@ class _Loop:
             options = self.wanted()
             result = self._made(replace(options, draft=True))
             if result.build.draft or options.edit:
+                result = self._made(replace(options, firsts=True))
+            if result.build.waiting:
                 self._made(options)
         except ScriptError as error:
             self._wrong(str(error), error.report)
@@ -137,14 +140,14 @@ class _Loop:
         """One build, in its place."""
 
         def finish(stage: Path, result: Result) -> None:
-            state = "draft" if result.build.draft else "done"
+            state = _state(result)
             self._write(state, _summary(result), result.warnings, self.revision + 1, stage)
 
         with self.watching() as progress:
             stepping = _Stepping(progress, self.saved)
             result = compile_file(self.file, self.folder, options, stepping, self.workshop, finish)
         self.revision += 1
-        self._state = "draft" if result.build.draft else "done"
+        self._state = _state(result)
         self.told(News(self._state, self.revision, _summary(result), result, result.warnings))
         return result
 
@@ -193,11 +196,19 @@ class _Loop:
         return {f.absolute() for f in folders if f.is_dir()}
 
 
+def _state(result: Result) -> str:
+    return "draft" if result.build.draft else "firsts" if result.build.waiting else "done"
+
+
 def _summary(result: Result) -> str:
     shots = result.build.shots
     waiting = sum(any(t.media.sketched for t in s.takes) for s in shots)
     if result.build.draft:
         return f"draft: {waiting} of {len(shots)} shots are being filmed"
+    if result.build.waiting:
+        return (
+            f"the film is there; other takes of {result.build.waiting} of {len(shots)} shots are being filmed"
+        )
     return f"{len(shots)} {'shot' if len(shots) == 1 else 'shots'} in {result.report.seconds:.1f} s"
 
 

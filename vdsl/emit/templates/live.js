@@ -69,7 +69,7 @@ const live = {
     const box = by("told");
     const wrong = state === "error";
     const words = wrong ? message || "The script has errors; this is the last good build."
-      : state === "draft" ? message || "Drafting…" : state === "building" ? message || "Compiling…"
+      : state === "draft" || state === "firsts" ? message || "Drafting…" : state === "building" ? message || "Compiling…"
       : stale ? "The script has changed since this build." : "";
     const text = JSON.stringify([words, wrong && diagnostics]);
     if (box.dataset.text === text) return;

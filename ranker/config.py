@@ -18,7 +18,8 @@ BACKBONES = ("resnet50", "resnet18")
 class ModelConfig:
     """Shape of the network, and the words its class heads know, in the order of their outputs.
 
-    frames, size: pictures of a shot and their side in pixels, at inference
+    frames, size: pictures of a shot and their side in pixels, at inference; inner: side to which they are
+        scaled for the network
     contrast: length of the vectors of L_q; motion: of what is made of the picture's motion, 0 for none
     moments: whether a frame is described by where in it features are too, and not by how strong alone
     measures: numbers of L_h that the heads read off the features before they judge, 0 for none
@@ -30,6 +31,7 @@ class ModelConfig:
     backbone: str = "resnet50"
     frames: int = 8
     size: int = 224
+    inner: int = 224
     contrast: int = 128
     motion: int = 0
     moments: bool = False
@@ -65,7 +67,7 @@ class TrainConfig:
     calibration: batches over which batch-norm statistics are taken anew at full size at the end
     autocast: compute in bfloat16 where the network allows; augment: mirror, and vary the light
     watched: held-out clips looked at after every epoch, for the curves
-    backbone, size: of the model, at inference
+    backbone, size, inner: of the model, at inference
     """
 
     phases: tuple[Phase, ...]
@@ -89,6 +91,7 @@ class TrainConfig:
     augment: bool = True
     backbone: str = "resnet50"
     size: int = 224
+    inner: int = 224
     seed: int = 0
     threads: int = 2
     watched: int = 256
@@ -99,10 +102,10 @@ CPU = TrainConfig(
     phases=(
         Phase(epochs=5, size=64, frames=3, key_frames=1, batch=16),
         Phase(epochs=3, size=96, frames=3, key_frames=1, batch=16),
-        Phase(epochs=1, size=128, frames=3, key_frames=1, batch=16),
-        Phase(epochs=1, size=160, frames=2, key_frames=1, batch=16, share=0.5),
-        Phase(epochs=1, size=224, frames=2, key_frames=1, batch=16, share=0.25),
+        Phase(epochs=2, size=128, frames=3, key_frames=1, batch=16),
+        Phase(epochs=1, size=160, frames=3, key_frames=1, batch=16),
     ),
+    inner=160,
     learning_rate=8e-4,
     momentum=0.99,
     contrast_weight=0.25,
@@ -140,6 +143,7 @@ def model_from_json(values: dict[str, Any]) -> ModelConfig:
         words = {k: tuple(str(w) for w in values[k]) for k in ("movements", "scales", "angles")}
         rest = {k: int(values[k]) for k in ("frames", "size", "contrast")}
         rest |= {k: int(values.get(k, 0)) for k in ("motion", "measures")}
+        rest["inner"] = int(values.get("inner", rest["size"]))
         moments = bool(values.get("moments", False))
         config = ModelConfig(**words, backbone=str(values["backbone"]), moments=moments, **rest)  # type: ignore[arg-type]
     except (KeyError, TypeError, ValueError) as error:
@@ -148,7 +152,7 @@ def model_from_json(values: dict[str, Any]) -> ModelConfig:
         raise RankerError("the ranker's config is not understood: unknown backbone or no classes")
     if not (
         1 <= config.frames <= 64
-        and 16 <= config.size <= 1024
+        and 16 <= config.inner <= config.size <= 1024
         and 1 <= config.contrast <= 4096
         and 0 <= config.motion <= 4096
         and 0 <= config.measures <= 4096

@@ -199,11 +199,7 @@ class Dataset:
     def clip(self, index: int, frames: Sequence[int], size: int) -> NDArray[np.uint8]:
         """Chosen frames of a clip, scaled to a square: uint8 [len(frames), size, size, 3]."""
         shard, row = self._where[index]
-        chosen = np.asarray(self._arrays[shard][row, list(frames)])
-        if chosen.shape[1:3] == (size, size):
-            return chosen
-        how = cv2.INTER_AREA if size < chosen.shape[1] else cv2.INTER_LINEAR
-        return np.stack([cv2.resize(f, (size, size), interpolation=how) for f in chosen]).astype(np.uint8)
+        return scaled(np.asarray(self._arrays[shard][row, list(frames)]), size)
 
     def shards(self) -> Iterator[tuple[Path, NDArray[np.uint8]]]:
         """The files of the frames in order, and what is in each: uint8 [n, T, H, W, 3]."""
@@ -274,6 +270,17 @@ class Dataset:
             "groups": len({la.group for la in self.labels}),
             **({"made": self.made} if self.made else {}),
         }
+
+
+def scaled(frames: NDArray[np.uint8], size: int) -> NDArray[np.uint8]:
+    """Pictures uint8 [N, H, W, 3] as squares: [N, size, size, 3]."""
+    if frames.shape[1:3] == (size, size):
+        return frames
+    out = np.empty((len(frames), size, size, 3), np.uint8)
+    how = cv2.INTER_AREA if size < frames.shape[1] else cv2.INTER_LINEAR
+    for frame, small in zip(frames, out, strict=True):
+        cv2.resize(frame, (size, size), dst=small, interpolation=how)
+    return out
 
 
 def _shards(folder: Path) -> list[Path]:

@@ -9,7 +9,7 @@ import numpy as np
 import torch
 from numpy.typing import NDArray
 
-from .data import Dataset
+from .data import Dataset, scaled
 from .infer import Ranker, Scores
 from .model import ShotRanker, frame_times, normalised
 from .motion import motion
@@ -74,8 +74,8 @@ def agreement_with_fp32(
         frames = _frames(ranker, data, np.array([clip]))
         quick.append(float(ranker.score(frames).margin[0]))
         with torch.inference_mode():
-            pictures = torch.from_numpy(frames).to(device)
-            moved = motion(pictures) if model.config.motion else None
+            moved = motion(torch.from_numpy(frames).to(device)) if model.config.motion else None
+            pictures = torch.from_numpy(scaled(frames[0], model.config.inner)[None]).to(device)
             exact.append(float(model(normalised(pictures), times, moved).logit[0]))
     return spearman(np.array(exact), np.array(quick))
 

@@ -21,6 +21,7 @@ from torch import Tensor, nn
 from torch.nn.utils.fusion import fuse_conv_bn_eval
 
 from .config import ModelConfig
+from .data import scaled
 from .engine import has_vnni
 from .errors import RankerError
 from .int8 import Int8Backbone, Ranges
@@ -121,9 +122,9 @@ class Ranker:
 
     def _encoded(self, pictures: NDArray[np.uint8]) -> Tensor:
         """Features [N, D] of N pictures, no more than go through at once."""
-        room, count = self._batch * self.config.frames, len(pictures)
-        padded = np.zeros((room, *pictures.shape[1:]), np.uint8)
-        padded[:count] = pictures
+        room, count, side = self._batch * self.config.frames, len(pictures), self.config.inner
+        padded = np.zeros((room, side, side, 3), np.uint8)
+        padded[:count] = scaled(pictures, side)
         return self._features(torch.from_numpy(padded).to(self.device))[:count]
 
     @torch.inference_mode()
@@ -139,7 +140,7 @@ class Ranker:
         if ranges is None or self.device.type != "cpu" or not has_vnni():
             return None
         try:
-            return Int8Backbone(folded, ranges, self._batch * self.config.frames, self.config.size)
+            return Int8Backbone(folded, ranges, self._batch * self.config.frames, self.config.inner)
         except (AttributeError, RuntimeError):  # a torch without the operators
             return None
 
@@ -155,7 +156,8 @@ class Ranker:
         return encode
 
     def _frozen(self, backbone: nn.Module) -> Callable[[Tensor], Tensor]:
-        example = torch.zeros(self._batch * self.config.frames, 3, self.config.size, self.config.size)
+        side = self.config.inner
+        example = torch.zeros(self._batch * self.config.frames, 3, side, side)
         example = example.to(torch.bfloat16).contiguous(memory_format=torch.channels_last)
         with torch.inference_mode(), warnings.catch_warnings():
             warnings.simplefilter("ignore")  # tracing is deprecated, and still the quickest here

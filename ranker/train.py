@@ -92,6 +92,7 @@ def train(
         config.backbone,
         data.frames,
         config.size,
+        min(config.inner, config.size),
         motion=config.motion,
         moments=config.moments,
         measures=len(data.hints[0]) if config.hint_weight else 0,
@@ -192,7 +193,7 @@ def take_over(model: ShotRanker, folder: str | Path) -> str:
 def int8_ranges(model: ShotRanker, data: Dataset, clips: NDArray[np.int64], seed: int = 0) -> Ranges:
     """What computing in eight bits needs to know of a network: its outputs on some of the clips."""
     some = np.random.default_rng(seed).permutation(clips)[:_MEASURED]
-    size, at = model.config.size, (0, data.frames // 2)
+    size, at = model.config.inner, (0, data.frames // 2)
     pictures = [normalised(torch.from_numpy(data.clip(int(i), at, size))) for i in some]
     return measured_ranges(fold_batch_norm(model.backbone), pictures)
 
@@ -242,10 +243,10 @@ def watch(
 def calibrate(
     model: ShotRanker, data: Dataset, clips: NDArray[np.int64], config: TrainConfig, device: torch.device
 ) -> None:
-    """Take the batch-norm statistics anew from full-size pictures of ``config.calibration`` batches."""
+    """Take batch-norm statistics anew, from ``config.calibration`` batches as large as at inference."""
     norms = [m for m in model.modules() if isinstance(m, nn.BatchNorm2d)]
     kept = [m.momentum for m in norms]
-    phase = Phase(1, model.config.size, frames=2, key_frames=0, batch=16)
+    phase = Phase(1, model.config.inner, frames=2, key_frames=0, batch=16)
     for norm in norms:
         norm.reset_running_stats()
         norm.momentum = None  # the plain average of all batches

@@ -28,7 +28,7 @@ TINY = TrainConfig(
 
 
 def model_config(**changes: object) -> ModelConfig:
-    values = {"backbone": "resnet18", "frames": FRAMES, "size": SIZE, "contrast": 16} | changes
+    values = {"backbone": "resnet18", "frames": FRAMES, "size": SIZE, "inner": SIZE, "contrast": 16} | changes
     return ModelConfig(WORDS.movements, WORDS.scales, WORDS.angles, **values)  # type: ignore[arg-type]
 
 

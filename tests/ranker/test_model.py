@@ -14,6 +14,7 @@ from ranker_clips import FRAMES, SIZE, TINY, WORDS, clip, model_config, write_cl
 from ranker.config import Phase, model_from_json, to_json
 from ranker.data import Dataset, ShardWriter, Words
 from ranker.errors import RankerError
+from ranker.infer import Ranker
 from ranker.model import Pool, ShotRanker, frame_times, normalised
 from ranker.train import take_over, train
 from ranker.weights import load_model, save_weights
@@ -111,3 +112,24 @@ def test_an_epoch_may_go_through_a_share_of_the_clips(tmp_path: Path) -> None:
     config = replace(TINY, phases=(Phase(2, SIZE, 2, 2, 8, share=0.4), Phase(1, SIZE, 2, 2, 8)))
     train(tmp_path / "data", tmp_path / "out", config, lines.append)
     assert [line["step"] for line in lines if "step" in line] == [2, 4, 9]
+
+
+def test_pictures_are_scaled_to_what_the_network_was_taught_by(tmp_path: Path) -> None:
+    torch.manual_seed(2)
+    large = ShotRanker(model_config(size=2 * SIZE, inner=SIZE))
+    small = ShotRanker(model_config())
+    small.load_state_dict(large.state_dict())
+    frames = np.random.default_rng(1).integers(0, 255, (2, FRAMES, 2 * SIZE, 2 * SIZE, 3), dtype=np.uint8)
+    shrunk = frames.reshape(2, FRAMES, SIZE, 2, SIZE, 2, 3).mean((3, 5)).round().astype(np.uint8)
+    by_large, by_small = Ranker(large, "cpu"), Ranker(small, "cpu")
+    np.testing.assert_allclose(by_large.score(frames).feature, by_small.score(shrunk).feature, atol=0.05)
+    some = (0, 2)
+    np.testing.assert_allclose(
+        by_large.glance(frames[:, some], some).feature,
+        by_small.glance(shrunk[:, some], some).feature,
+        atol=0.05,
+    )
+    save_weights(tmp_path, large)
+    assert load_model(tmp_path)[0].config.inner == SIZE
+    with pytest.raises(RankerError, match="sizes out of range"):
+        model_from_json(to_json(large.config) | {"inner": 4 * SIZE})

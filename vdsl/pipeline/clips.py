@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from ..cinema.track import CameraTrack
 from ..lang.ir import Shot
 from ..propose.cameras import measured_anew
 from ..propose.promise import achieved
@@ -29,6 +30,8 @@ _MISTYPED_STRENGTH = 0.5
 _TRIES = (0.0, 0.0, 0.4, 1.0)
 #: Share of its appeal that a take has to lose where it gets no fault of the designer's.
 _LOST = 0.08
+#: Movement that is seen: a share of the distance, radians, log of the focal length.
+_SEEN_WAY, _SEEN_TURN, _SEEN_ZOOM = 0.04, 0.04, 0.05
 
 Words = tuple[str | None, str | None, str | None]
 
@@ -88,8 +91,19 @@ def _read(scene: Scene, shot: Shot, grid: ProposalGrid, camera: CameraProposal) 
     story = grid.story[camera.story]
     found = achieved(camera, subject_of(shot, story, scene.filming), scene.filming.rig).kept(camera)
     movement, scale, angle = _asked(camera)
+    # who is followed may stay where they are, and then nobody can tell it from a still camera
+    shown = found["movement"] and (movement != "follow" or moves(camera.track))
     return (
-        movement if found["movement"] else None,
+        movement if shown else None,
         scale if found["scale"] else None,
         angle if found["angle"] else None,
     )
+
+
+def moves(track: CameraTrack) -> bool:
+    """Whether one sees that a camera is not still: it turns, gets on or zooms enough at some time."""
+    distance = np.maximum(np.linalg.norm(track.look_at - track.position, axis=-1), 0.2)
+    way = np.linalg.norm(track.position - track.position[0], axis=-1) / distance[0]
+    turn = np.abs((track.rotation - track.rotation[0] + np.pi) % (2 * np.pi) - np.pi).max(axis=-1)
+    zoom = np.abs(np.log(track.focal / track.focal[0]))
+    return bool(max(way.max() / _SEEN_WAY, turn.max() / _SEEN_TURN, zoom.max() / _SEEN_ZOOM) > 1.0)

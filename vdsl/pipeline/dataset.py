@@ -39,7 +39,7 @@ from .labels import WORDS
 from .progress import Progress, Silence
 
 #: Raised when other takes or labels come of the same seed.
-_RECIPE = 3
+_RECIPE = 4
 _PROPOSALS = 16
 _SHARD = 64
 #: Processes at most, and stories that each has waiting: a story's pictures take up to 80 MB.

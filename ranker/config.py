@@ -22,7 +22,8 @@ class ModelConfig:
         scaled for the network
     contrast: length of the vectors of L_q; motion: of what is made of the picture's motion, 0 for none
     moments: whether a frame is described by where in it features are too, and not by how strong alone
-    measures: numbers of L_h that the heads read off the features before they judge, 0 for none
+    measures, marks: numbers of L_h of a shot, and of a frame, that are read off the features before the heads
+        judge, 0 for none
     """
 
     movements: tuple[str, ...]
@@ -36,6 +37,7 @@ class ModelConfig:
     motion: int = 0
     moments: bool = False
     measures: int = 0
+    marks: int = 0
 
 
 @dataclass(frozen=True)
@@ -142,7 +144,7 @@ def model_from_json(values: dict[str, Any]) -> ModelConfig:
     try:
         words = {k: tuple(str(w) for w in values[k]) for k in ("movements", "scales", "angles")}
         rest = {k: int(values[k]) for k in ("frames", "size", "contrast")}
-        rest |= {k: int(values.get(k, 0)) for k in ("motion", "measures")}
+        rest |= {k: int(values.get(k, 0)) for k in ("motion", "measures", "marks")}
         rest["inner"] = int(values.get("inner", rest["size"]))
         moments = bool(values.get("moments", False))
         config = ModelConfig(**words, backbone=str(values["backbone"]), moments=moments, **rest)  # type: ignore[arg-type]
@@ -156,6 +158,7 @@ def model_from_json(values: dict[str, Any]) -> ModelConfig:
         and 1 <= config.contrast <= 4096
         and 0 <= config.motion <= 4096
         and 0 <= config.measures <= 4096
+        and 0 <= config.marks <= 4096
     ):
         raise RankerError("the ranker's config is not understood: sizes out of range")
     return config

@@ -221,16 +221,12 @@ class Dataset:
         """What whoever made the set knows of its clips in numbers (``hints`` of a label's ``about``): their
         names, and float32 [N, K], scaled to mean 0 and deviation 1 each, within 3; NaN where not known.
         """
-        told = [label.about.get("hints") or {} for label in self.labels]
-        names = tuple(sorted({name for hints in told for name in hints}))
-        table = np.array([[hints.get(n, np.nan) for n in names] for hints in told], np.float64)
-        table = table.reshape(len(told), len(names))
-        if not table.size:
-            return (), np.zeros((len(told), 0), np.float32)
-        middle = np.nanmean(table, 0)
-        middle[[name.startswith(MIRRORED) for name in names]] = 0.0  # so that a mirrored one is the negative
-        spread = np.sqrt(np.nanmean((table - middle) ** 2, 0))
-        return names, np.clip((table - middle) / np.maximum(spread, 1e-6), -3, 3).astype(np.float32)
+        return _standard([label.about.get("hints") or {} for label in self.labels], ())
+
+    @cached_property
+    def frame_hints(self) -> tuple[tuple[str, ...], NDArray[np.float32]]:
+        """The same of single frames (``frames`` of a label's ``about``): float32 [N, T, K]."""
+        return _standard([label.about.get("frames") or {} for label in self.labels], (self.frames,))
 
     @cached_property
     def professional(self) -> NDArray[np.float32]:
@@ -270,6 +266,26 @@ class Dataset:
             "groups": len({la.group for la in self.labels}),
             **({"made": self.made} if self.made else {}),
         }
+
+
+def _standard(
+    told: list[dict[str, Any]], shape: tuple[int, ...]
+) -> tuple[tuple[str, ...], NDArray[np.float32]]:
+    """Numbers of ``shape`` by name as a table of all names [N, *shape, K], scaled as ``hints``."""
+    names = tuple(sorted({name for hints in told for name in hints}))
+    unknown = np.full(shape, np.nan)
+    table = np.array(
+        [[np.asarray(hints.get(n, unknown), float) for n in names] for hints in told], np.float64
+    )
+    table = table.reshape(len(told), len(names), *shape)
+    if not table.size:
+        return (), np.zeros((len(told), *shape, 0), np.float32)
+    table = np.moveaxis(table, 1, -1)
+    across = tuple(range(table.ndim - 1))
+    middle = np.nanmean(table, across)
+    middle[[name.startswith(MIRRORED) for name in names]] = 0.0  # so that a mirrored one is the negative
+    spread = np.sqrt(np.nanmean((table - middle) ** 2, across))
+    return names, np.clip((table - middle) / np.maximum(spread, 1e-6), -3, 3).astype(np.float32)
 
 
 def scaled(frames: NDArray[np.uint8], size: int) -> NDArray[np.uint8]:

@@ -6,7 +6,8 @@ features over time: an average alone cannot tell a pan to the left from one to t
 is composed hangs on where things are in it, which the average over the picture of a ResNet forgets; so its
 first moments go along (:class:`Pool`). What single frames do not show, how the picture moves as a whole,
 comes in as numbers (:mod:`ranker.motion`). And where clips come with what is known of them in numbers (L_h),
-those are told first and judged by (a concept bottleneck, Koh et al. 2020, with the features beside it).
+of the shot and of each frame, those are told first and judged by (a concept bottleneck, Koh et al. 2020, with
+the features beside it).
 """
 
 from __future__ import annotations
@@ -31,7 +32,7 @@ class Output(NamedTuple):
 
     logit [B], of p_b; movement, scale, angle [B, classes], logits of p_c; feature [B, D], the average
     of the frames' features; contrast [B, C], unit vectors z of L_q; told [B, measures], what is read off the
-    features of the numbers of L_h
+    features of the numbers of L_h; marked [B, T, marks], the same of single frames
     """
 
     logit: Tensor
@@ -41,6 +42,7 @@ class Output(NamedTuple):
     feature: Tensor
     contrast: Tensor
     told: Tensor
+    marked: Tensor
 
 
 class Pool(nn.Module):
@@ -98,7 +100,10 @@ class ShotRanker(nn.Module):
             self.reader = nn.Linear(fused, config.measures)
             if config.motion:
                 self.reader_moved = nn.Linear(config.motion, config.measures, bias=False)
-            reasons = nn.Sequential(nn.Linear(config.measures, 128), nn.ReLU(), nn.Dropout(0.2))
+            if config.marks:
+                self.marker = nn.Linear(self.described, config.marks)
+            known = config.measures + 3 * config.marks
+            reasons = nn.Sequential(nn.Linear(known, 128), nn.ReLU(), nn.Dropout(0.2))
             self.reasons = nn.Sequential(*reasons, nn.Linear(128, 1 + sum(sizes)))
 
     def forward(self, frames: Tensor, times: Tensor, moved: Tensor | None = None) -> Output:
@@ -122,18 +127,22 @@ class ShotRanker(nn.Module):
             if seen is not None:
                 professional = professional + self.professional_moved(seen)
                 movement = movement + self.movement_moved(seen)
-            told = fused.new_zeros(len(fused), 0)
+            told, marked = fused.new_zeros(len(fused), 0), features.new_zeros(*features.shape[:2], 0)
             if self.reader is not None:
                 told = self.reader(fused)
                 if seen is not None:
                     told = told + self.reader_moved(seen)
                 sizes = [1, movement.shape[1], scale.shape[1], angle.shape[1]]
-                more = self.reasons(told).split(sizes, 1)
+                known = told
+                if self.config.marks:
+                    marked = self.marker(features)
+                    known = torch.cat([told, fuse(marked, times)], 1)
+                more = self.reasons(known).split(sizes, 1)
                 professional, movement, scale, angle = (
                     a + b for a, b in zip((professional, movement, scale, angle), more, strict=True)
                 )
             contrast = functional.normalize(self.contrast(average), dim=1)
-            return Output(professional.squeeze(1), movement, scale, angle, average, contrast, told)
+            return Output(professional.squeeze(1), movement, scale, angle, average, contrast, told, marked)
 
     def _seen(self, moved: Tensor | None) -> Tensor | None:
         """What is made of the motion of shots; zeros where it is not known."""

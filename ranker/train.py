@@ -44,7 +44,10 @@ Report = Callable[[dict[str, Any]], None]
 
 
 class Batch(NamedTuple):
-    """Clips of one step: frames uint8 [B, T, S, S, 3] and times [B, T] of query and key; labels."""
+    """Clips of one step: frames uint8 [B, T, S, S, 3] and times [B, T] of query and key; labels.
+
+    hints [B, K], marks [B, T, M] of the query's frames, moved [B, pairs, NUMBERS]: NaN is not known
+    """
 
     query: Tensor
     query_times: Tensor
@@ -53,6 +56,7 @@ class Batch(NamedTuple):
     professional: Tensor
     classes: Tensor
     hints: Tensor
+    marks: Tensor
     moved: Tensor | None
     clips: Tensor
 
@@ -96,6 +100,7 @@ def train(
         motion=config.motion,
         moments=config.moments,
         measures=len(data.hints[0]) if config.hint_weight else 0,
+        marks=len(data.frame_hints[0]) if config.hint_weight and data.hints[0] else 0,
     )
     moved = torch.from_numpy(motions(data)) if config.motion else None
     model = ShotRanker(shape)
@@ -284,6 +289,8 @@ def _losses(
     hint = torch.zeros((), device=device)
     if config.hint_weight and batch.hints.shape[1]:
         hint = hint_loss(out.told, batch.hints.to(device))
+        if out.marked.shape[2]:
+            hint = hint + hint_loss(out.marked, batch.marks.to(device))
     if config.contrast_weight == 0:
         return binary, classes, torch.zeros((), device=device), hint
     with torch.no_grad(), torch.autocast(device.type, torch.bfloat16, enabled=config.autocast):
@@ -341,23 +348,29 @@ def _batch(
     if count + keyed > data.frames:
         raise RankerError(f"query and key need {count + keyed} frames, the clips have {data.frames}")
     classes, hints = data.classes[clips], data.hints[1][clips]
-    turned = [name.startswith(MIRRORED) for name in data.hints[0]]
-    frames, places = [], []
+    turned, turned_marks = (
+        np.array([name.startswith(MIRRORED) for name in names], bool)
+        for names in (data.hints[0], data.frame_hints[0])
+    )
+    frames, places, marks = [], [], []
     own = None if moved is None else moved[torch.from_numpy(clips)]
     for row, index in enumerate(clips):
         chosen = rng.permutation(data.frames)
         picked = np.concatenate([np.sort(chosen[:count]), np.sort(chosen[count : count + keyed])])
         clip = data.clip(int(index), picked.tolist(), phase.size)
+        mark = data.frame_hints[1][index][picked[:count]]
         if config.augment:
             clip, flipped = varied(clip, rng)
             if flipped:
                 hints[row, turned] *= -1
+                mark = np.where(turned_marks, -mark, mark)
                 if own is not None:
                     own[row] = mirrored(own[row])
                 if classes[row, 0] >= 0:
                     classes[row, 0] = mirror[classes[row, 0]]
             if own is not None and rng.random() < config.unmoved:
                 own[row] = torch.nan
+        marks.append(mark)
         frames.append(clip)
         places.append(times[picked])
     pictures, moments = torch.from_numpy(np.stack(frames)), torch.from_numpy(np.stack(places))
@@ -369,6 +382,7 @@ def _batch(
         torch.from_numpy(data.professional[clips]),
         torch.from_numpy(classes),
         torch.from_numpy(hints),
+        torch.from_numpy(np.stack(marks)),
         own,
         torch.from_numpy(clips),
     )

@@ -14,7 +14,8 @@ import pytest
 
 from ranker.data import MIRRORED, Dataset
 from ranker.errors import RankerError
-from vdsl.cinema.track import CameraTrack, look_at_rotation
+from vdsl.cinema.subject import Subject
+from vdsl.cinema.track import CameraTrack, camera_axes, look_at_rotation
 from vdsl.lang import Report, Source
 from vdsl.lang.ir import ALL_ANGLES, FURTHER_MOVEMENTS, MOVEMENTS, SIZES
 from vdsl.library import Catalog
@@ -23,7 +24,7 @@ from vdsl.pipeline.casting import Scene, Troupe, split_of_story
 from vdsl.pipeline.clips import Clip, clips_of, moves
 from vdsl.pipeline.dataset import _Filmed, generate
 from vdsl.pipeline.designer import judged, picks
-from vdsl.pipeline.hints import hints_of
+from vdsl.pipeline.hints import frame_hints_of, hints_of
 from vdsl.pipeline.labels import WORDS, classes
 from vdsl.pipeline.perturb import mistyped, perturbed
 from vdsl.pipeline.script import check_source
@@ -243,6 +244,10 @@ def test_a_training_set_is_half_good_and_goes_on_where_it_stopped(
     names, hints = data.hints
     assert {"thirds_error", "face", "right_panning", "nearness"} <= set(names)
     assert np.isfinite(hints).all()
+    names, marks = data.frame_hints
+    assert {"right_eyes", "feet", "pitch", "size"} <= set(names)
+    assert marks.shape[:2] == (at_once, 8)
+    assert np.isfinite(marks).mean() > 0.95
     frames = data.clip(0, range(8), 64)
     assert frames.shape == (8, 64, 64, 3)
     assert frames.std() > 10
@@ -304,3 +309,31 @@ def test_hints_of_a_mirrored_take_are_mirrored() -> None:
     for name, value in here.items():
         sign = -1 if name.startswith(MIRRORED) else 1
         assert there[name] == pytest.approx(sign * value, abs=1e-4), name
+
+
+def test_frame_hints_say_where_the_subject_is_and_are_mirrored_with_it() -> None:
+    track, count = _track(), 40
+    ahead = track.position + 4.0 * camera_axes(track.rotation)[:, 2]
+    at = np.array([0, 13, 39])
+
+    def subject(turn: float, swap: float) -> Subject:
+        up = {"crown": 0.9, "eyes": 0.75, "chin": 0.65, "waist": 0.0, "feet": -0.9}
+        points = {name: (ahead + np.array((0.3, 0.1, z))) * (1, swap, 1) for name, z in up.items()}
+        face = np.tile((np.cos(turn), swap * np.sin(turn), 0.0), (count, 1))
+        return Subject("anna", "person", 1.8, ahead, np.zeros(count), points, face)
+
+    other = replace(
+        track,
+        position=track.position * (1, -1, 1),
+        look_at=track.look_at * (1, -1, 1),
+        rotation=track.rotation * (-1, 1, -1),
+    )
+    camera = CameraProposal(**dict.fromkeys((f.name for f in fields(CameraProposal)), None))  # type: ignore[arg-type]
+    here = frame_hints_of(replace(camera, track=track), subject(0.4, 1.0), at)
+    there = frame_hints_of(replace(camera, track=other), subject(0.4, -1.0), at)
+    for name, values in here.items():
+        sign = -1 if name.startswith(MIRRORED) else 1
+        np.testing.assert_allclose(there[name], np.multiply(values, sign), atol=2e-3, err_msg=name)
+    assert (np.array(here["crown"]) > np.array(here["feet"])).all()
+    behind = replace(track, rotation=track.rotation + np.array((0, 0, np.pi)))
+    assert np.isnan(frame_hints_of(replace(camera, track=behind), subject(0.4, 1.0), at)["right_eyes"]).all()

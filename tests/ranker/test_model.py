@@ -44,7 +44,7 @@ def test_a_mirrored_picture_has_mirrored_moments() -> None:
 
 def test_weights_of_before_there_were_moments_still_describe_a_network() -> None:
     values = to_json(model_config())
-    for name in ("moments", "measures", "motion"):
+    for name in ("moments", "measures", "marks", "motion"):
         del values[name]
     assert model_from_json(values) == model_config()
 
@@ -55,18 +55,23 @@ def test_what_is_told_of_a_shot_is_learnt_and_judged_by(tmp_path: Path) -> None:
         for i in range(48):
             good, movement, scale, angle = i % 2 == 0, i % 3, i // 2 % 2, i // 4 % 2
             told = {"redness": float(good), "right_way": float((0, -1, 1)[movement])}
+            shown = {"right_place": [(0, -1, 1)[movement] * (3.0 * k - 4) for k in range(FRAMES)]}
             words = WORDS.movements[movement], WORDS.scales[scale], WORDS.angles[angle]
             frames = clip(rng, good, movement, scale, angle)
-            writer.add(frames, good, *words, "g", 0.0 if good else 0.5, about={"hints": told})
+            writer.add(
+                frames, good, *words, "g", 0.0 if good else 0.5, about={"hints": told, "frames": shown}
+            )
     train(tmp_path / "data", tmp_path / "out", replace(TINY, hint_weight=4.0))
     model, data = load_model(tmp_path / "out" / "weights")[0], Dataset(tmp_path / "data")
-    assert model.config.measures == 2
+    assert (model.config.measures, model.config.marks) == (2, 1)
     frames = torch.from_numpy(np.stack([data.clip(i, range(FRAMES), SIZE) for i in range(48)]))
     with torch.inference_mode():
         out = model(normalised(frames), frame_times(model.config).expand(48, -1))
         for column, known in enumerate(data.hints[1].T):
             assert np.corrcoef(out.told[:, column], known)[0, 1] > 0.8
-        more = model.reasons(torch.tensor([[0.0, 0.0], [1.0, 0.0]]))
+        place = data.frame_hints[1][:, :, 0]
+        assert np.corrcoef(out.marked[:, :, 0].flatten(), place.flatten())[0, 1] > 0.8
+        more = model.reasons(torch.eye(2, 5))
     assert float((more[0] - more[1]).abs().max()) > 0.01  # what is told counts
 
 

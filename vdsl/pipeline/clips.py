@@ -7,7 +7,7 @@ that a label of movement, size or angle is what the track itself reads as.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -19,6 +19,8 @@ from ..propose.subjects import subject_of
 from ..propose.types import CameraProposal, ProposalGrid
 from .casting import Scene
 from .designer import appeal, judged, picks
+from .filming import segment_frames
+from .hints import frame_hints_of
 from .labels import classes
 from .perturb import mistyped, perturbed
 
@@ -39,12 +41,14 @@ Words = tuple[str | None, str | None, str | None]
 @dataclass(frozen=True, eq=False)
 class Clip:
     """A take to be drawn. kind: ``designer``, ``perturbed`` or ``mistyped``; words: movement, size and angle
-    as classes, None for what it does not show clearly"""
+    as classes, None for what it does not show clearly; frames: what is known of each judged frame in numbers
+    """
 
     camera: CameraProposal
     kind: str
     strength: float
     words: Words
+    frames: dict[str, list[float]] = field(default_factory=dict)
 
 
 def clips_of(scene: Scene, rng: np.random.Generator) -> list[Clip]:
@@ -54,9 +58,15 @@ def clips_of(scene: Scene, rng: np.random.Generator) -> list[Clip]:
         kept = [grid.cameras[i] for i in picks(grid.cameras, _PICKS)]
         bad = [_spoilt(scene, shot, grid, camera, rng) for camera in kept]
         pairs = [(good, clip) for good, clip in zip(kept, bad, strict=True) if clip is not None]
-        out += [Clip(good, "designer", 0.0, _read(scene, shot, grid, good)) for good, _ in pairs]
-        out += [clip for _, clip in pairs]
+        made = [Clip(good, "designer", 0.0, _read(scene, shot, grid, good)) for good, _ in pairs]
+        made += [clip for _, clip in pairs]
+        out += [replace(clip, frames=_frames(scene, shot, grid, clip.camera)) for clip in made]
     return out
+
+
+def _frames(scene: Scene, shot: Shot, grid: ProposalGrid, camera: CameraProposal) -> dict[str, list[float]]:
+    story = grid.story[camera.story]
+    return frame_hints_of(camera, subject_of(shot, story, scene.filming), segment_frames(story.frames))
 
 
 def _spoilt(

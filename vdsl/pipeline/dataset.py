@@ -173,6 +173,7 @@ def _filmed(scene: Scene, seed: int, camerawork: Camerawork, size: int) -> _Film
             "place": scene.place,
             "cast": list(scene.cast),
             "hints": hints_of(c),
+            "frames": clip.frames,
         }
         group, good = scene.place.partition(".")[0], clip.kind == "designer"
         labels.append((good, *clip.words, group, clip.strength, scene.split, about))

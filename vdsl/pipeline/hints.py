@@ -7,12 +7,16 @@ much of the face is seen, how fast the camera turns, is known of every drawn tak
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
-from ..cinema.track import camera_axes
+from ..cinema.subject import Subject
+from ..cinema.track import camera_axes, project
 from ..propose.types import CameraProposal
 
 #: Measures that are heavy-tailed: their square root is taught.
 _LONG = ("jerk", "speed", "angular_speed")
+#: Points of a subject whose place in the frame is taught; half frames from its middle, no further than this.
+_POINTS, _FAR = ("crown", "eyes", "chin", "waist", "feet"), 3.0
 
 
 def hints_of(camera: CameraProposal) -> dict[str, float]:
@@ -47,3 +51,34 @@ def hints_of(camera: CameraProposal) -> dict[str, float]:
         "unsteady": float(np.abs(np.diff(track.rotation, 2, axis=0)).mean() ** 0.5),
     }
     return {k: round(v, 4) for k, v in sorted(found.items()) if np.isfinite(v)}
+
+
+def frame_hints_of(camera: CameraProposal, subject: Subject, at: NDArray[np.int64]) -> dict[str, list[float]]:
+    """What the geometry knows of some frames ``at`` of a take, by name a number for each; signs as above.
+
+    Where the subject's points lie (half frames from the middle, to the right and to the top; NaN behind the
+    camera), how large it is, how it faces the camera, and how the camera looks.
+    """
+    track = camera.track
+    position, rotation, focal = track.position[at], track.rotation[at], track.focal[at]
+    axes = camera_axes(rotation)
+    points = np.stack([subject.landmarks[name][at] for name in _POINTS], axis=1)
+    xy, depth = project(points, position, axes, focal, track.sensor)
+    place = (2.0 * xy - 1.0) * (1.0, -1.0)
+    place = np.where((depth > 0.05)[..., None], np.clip(place, -_FAR, _FAR), np.nan)
+    found: dict[str, NDArray[np.float64]] = {}
+    for k, name in enumerate(_POINTS):
+        found[f"right_{name}"], found[name] = place[:, k, 0], place[:, k, 1]
+    away = np.maximum(np.linalg.norm(subject.landmarks["waist"][at] - position, axis=-1), 0.2)
+    face = subject.face[at]
+    found |= {
+        "size": np.log(focal / away),
+        "distance": np.log(away),
+        "lens": np.log(focal),
+        "right_face": np.einsum("ti,ti->t", face, axes[:, 0]),
+        "face": -np.einsum("ti,ti->t", face, axes[:, 2]),
+        "pitch": rotation[:, 1],
+        "right_roll": rotation[:, 0],
+        "over": np.clip(position[:, 2] - subject.landmarks["eyes"][at, 2], -_FAR, _FAR),
+    }
+    return {k: [round(float(x), 4) for x in v] for k, v in sorted(found.items())}

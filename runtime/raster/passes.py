@@ -19,6 +19,8 @@ from .loaded import Loaded
 from .moments import Moments
 from .types import Style
 
+#: Rows of a picture above which its edges are drawn to a part of a pixel.
+FINE = 360
 Buffers = Callable[[str, tuple[int, ...], type], Any]
 
 
@@ -44,6 +46,7 @@ class Passes:
     def __init__(self, backend: Backend, buffer: Buffers, style: Style) -> None:
         from .kernels import (
             borders,
+            edges,
             grain,
             hatch,
             ink,
@@ -56,7 +59,7 @@ class Passes:
         )  # only now: they import taichi
 
         self._backend, self._buffer, self._style = backend, buffer, style
-        self._hatch, self._grain, self._smooth = hatch, grain, smooth
+        self._hatch, self._grain, self._edges, self._smooth = hatch, grain, edges, smooth
         self._grain_runs = vectorised(grain.grain_runs) if backend.on_host else None
         self._smooth_runs = vectorised(smooth.smooth_runs)
         self._sunlight = sunlight
@@ -265,9 +268,15 @@ class Passes:
     ) -> None:
         """Smoothed bytes into ``color``. seen: views, moments, how many views"""
         a, scene, views = loaded.arrays, loaded.scene, seen[2]
-        counts = (scene.static_faces, loaded.static_vertices)
-        meshes = (a["vertices"], moments.position, a["faces"], a["beside"])
-        shapes = (*seen[:2], *meshes, *counts, layer.vis, layer.edge)
+        counts, lines = (scene.static_faces, loaded.static_vertices), views * size[1]
+        fine = size[1] > FINE
+        edges = self._buffer("edges", (lines * size[0] if fine else 1,), np.int32)
+        if fine:
+            meshes = (a["vertices"], moments.position, a["faces"], a["beside"], *counts)
+            shown = (layer.vis, layer.edge, layer.picture, layer.marks, layer.level)
+            extent = (views, *size)
+            self._edges.find_edges(*seen[:2], *meshes, *shown, edges, *extent, *self._backend.crew(lines))
+        shapes = (scene.static_faces, layer.vis, edges, int(fine))
         final, runs = color.reshape(-1), (layer.marks, layer.level, self.linear, self.table)
         crew = self._backend.crew(views * size[1])
         if not self._backend.on_host or size[0] % self.run:

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from raster_scenes import LIGHT, box, looking, room, scene, sphere, still
 
 from runtime.mesh import Mesh
+from runtime.raster import passes
 from runtime.raster.adjacency import beside
 from runtime.raster.film import to_linear
 from runtime.raster.passes import Passes
@@ -54,6 +55,11 @@ def covered(drawer: Renderer, shift: float, axis: int, side: int) -> NDArray[np.
     line = color[side // 2] if axis == 0 else color[:, side // 2]
     light = to_linear(line / 255.0)
     return np.asarray((light - light.min()) / (light[side // 2] - light.min()))
+
+
+@pytest.fixture(autouse=True)
+def small_pictures_too(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(passes, "FINE", 0)
 
 
 @pytest.mark.parametrize("axis", [0, 1])

@@ -12,13 +12,34 @@ others.
 
 import taichi as ti
 
-from .geometry import greater, item3, lesser, nearness, row3, triangle, vec3
-from .ink import level
+from . import crew
+from .geometry import (
+    f2,
+    f3,
+    greater,
+    i1,
+    i2,
+    item3,
+    lesser,
+    nearness,
+    part3,
+    rays,
+    row3,
+    triangle,
+    u32s,
+    u64s,
+    vec3,
+)
+from .ink import level as level_with
+from .paint import RUN, SMOOTH
 
 NEVER = 2.0  # further than any neighbour
 FOLD = 0.03  # of 1/z squared: where a surface ends before itself
 OUTLINE, BEND = 2, 1
 FAR = 12  # triangles after which an end is no longer looked for
+REACH = 3  # pixels from which an edge is asked for
+UNKNOWN, OUTLINED, STEPS = 127, 128, 124  # of :func:`coded`
+FAINT = 12  # steps of luma that nobody sees
 MOST = 0.95  # of a pixel that may come from others
 
 
@@ -118,7 +139,7 @@ def border(behind, at, to, beyond, edge: ti.template(), vis: ti.template()):
             ends = 2.0 * w - nearness(vis, behind) - v > FOLD * w * w and w > v
             if ends or (2.0 * v - nearness(vis, beyond) - w > FOLD * v * v and v > w):
                 out = OUTLINE
-            elif not level(e, f):
+            elif not level_with(e, f):
                 out = BEND
     return out
 
@@ -149,19 +170,24 @@ def passing(
     far = FAR if kind == OUTLINE else 0
     here, there = NEVER, NEVER
     here_across, there_across = False, False
-    if t >= 0:
+    # it is that of the nearer one, if it ends there at all
+    first = nearness(vis, at) >= nearness(vis, to)
+    if t >= 0 and first:
         here, here_across = ended_at(
             t, far, m, eye, ray, step, beside, vertices, position, faces, joined, counts
         )
-    if u >= 0:
+    if u >= 0 and (kind == BEND or here >= 1.0):
         there, there_across = ended_at(
             u, far, m, eye, ray + step, step * -1.0, beside, vertices, position, faces, joined, counts
+        )
+    if t >= 0 and not first and (kind == BEND or there >= 1.0):
+        here, here_across = ended_at(
+            t, far, m, eye, ray, step, beside, vertices, position, faces, joined, counts
         )
     if kind == BEND and here < 1.0 and there < 1.0:
         if here_across or there_across:  # between them is what rounds the edge off
             out = 0.5 * (here - there)
-    elif here < 1.0 and (there >= 1.0 or nearness(vis, at) >= nearness(vis, to)):
-        # that of the nearer one, if it ends there at all
+    elif here < 1.0 and (first or there >= 1.0):
         if here_across:
             out = here - 0.5
     elif there < 1.0 and there_across:
@@ -170,79 +196,180 @@ def passing(
 
 
 @ti.func
-def moved(
-    at,
-    stride,
-    before,
-    after,
-    m,
-    eye,
-    ray,
-    step,
-    beside,
-    edge: ti.template(),
-    vis: ti.template(),
-    vertices: ti.template(),
-    position: ti.template(),
-    faces: ti.template(),
-    joined: ti.template(),
-    counts,
+def told_apart(a, b, c, d, picture: ti.template()):
+    """Whether four pixels in a line differ enough in luma for an edge among them to be seen."""
+    p, q = ti.cast(picture[a] >> 24, ti.i32), ti.cast(picture[b] >> 24, ti.i32)
+    r, s = ti.cast(picture[c] >> 24, ti.i32), ti.cast(picture[d] >> 24, ti.i32)
+    return greater(greater(p, q), greater(r, s)) - lesser(lesser(p, q), lesser(r, s)) > FAINT
+
+
+@ti.func
+def coded(kind, s):
+    """A border and how far off it passes in eight bits; never 0."""
+    out = UNKNOWN
+    if s < NEVER:
+        out = ti.cast((s + 0.5) * STEPS + 0.5, ti.i32) + 1
+    return out | (OUTLINED if kind == OUTLINE else 0)
+
+
+@ti.func
+def kind_of(code):
+    return 0 if code == 0 else (OUTLINE if code & OUTLINED else BEND)
+
+
+@ti.func
+def wanted(k, b, y, blocks, height, level: ti.template()):
+    """Whether block ``k``, the ``b``-th of row ``y``, or one within REACH of it is still to be smoothed."""
+    out = level[k] >= SMOOTH
+    if not out:
+        for j in range(ti.max(y - REACH, 0), ti.min(y + REACH + 1, height)):
+            row = k + (j - y) * blocks
+            out = out or level[row] >= SMOOTH
+            out = out or (b > 0 and level[row - 1] >= SMOOTH)
+            out = out or (b < blocks - 1 and level[row + 1] >= SMOOTH)
+    return out
+
+
+@ti.kernel
+def find_edges(
+    view: f2,
+    moment: i1,
+    vertices: f2,
+    position: f3,
+    faces: i2,
+    joined: i2,
+    static_faces: ti.i32,
+    static_vertices: ti.i32,
+    vis: u64s,
+    edge: u32s,
+    picture: u32s,
+    marks: i1,
+    level: i1,
+    found: i1,
+    views: ti.i32,
+    width: ti.i32,
+    height: ti.i32,
+    queue: i1,
+    slots: ti.i32,
+    host: ti.template(),
 ):
+    """Where edges pass between each pixel and the one on its right, from bit 8 on the one below; 0 for none.
+
+    marks, level: of blocks, pixels at which something ends, and what is left to do; joined: as
+    ``adjacency.beside`` has it
+    """
+    for slot in range(slots):
+        line = crew.task(slot, views * height, queue, host)
+        if line < views * height:
+            n, y = line // height, line % height
+            m = moment[n]
+            eye, first, step = rays(view, n, y)
+            down = part3(view, n, 6) * (-1.0 / view[n, 13])
+            counts = ti.Vector([static_faces, static_vertices])
+            blocks = (width + RUN - 1) // RUN
+            for b in range(blocks):
+                k = line * blocks + b
+                if not wanted(k, b, y, blocks, height, level):
+                    continue
+                begin = line * width + b * RUN
+                count = ti.min(RUN, width - b * RUN)
+                for i in range(count):
+                    found[begin + i] = 0
+                # marked is every pixel beside another triangle, where lines were drawn and no more was copied
+                bits = (1 << count) - 1
+                if level[k] >= SMOOTH:
+                    bits &= marks[k]
+                while bits != 0:
+                    i = 31 - ti.math.clz(bits)
+                    bits ^= 1 << i
+                    x, at = b * RUN + i, begin + i
+                    code = 0
+                    ray = first + step * ti.cast(x, ti.f32)
+                    if x < width - 1 and triangle(vis, at) != triangle(vis, at + 1):
+                        behind = at - 1 if x > 0 else at
+                        beyond = at + 2 if x < width - 2 else at + 1
+                        kind = border(behind, at, at + 1, beyond, edge, vis)
+                        if kind != 0:
+                            s = NEVER
+                            if told_apart(behind, at, at + 1, beyond, picture):
+                                s = passing(
+                                    at,
+                                    at + 1,
+                                    kind,
+                                    m,
+                                    eye,
+                                    ray,
+                                    step,
+                                    down,
+                                    vis,
+                                    vertices,
+                                    position,
+                                    faces,
+                                    joined,
+                                    counts,
+                                )
+                            code = coded(kind, s)
+                    if y < height - 1 and triangle(vis, at) != triangle(vis, at + width):
+                        below = at + width
+                        behind = at - width if y > 0 else at
+                        beyond = below + width if y < height - 2 else below
+                        kind = border(behind, at, below, beyond, edge, vis)
+                        if kind != 0:
+                            s = NEVER
+                            if told_apart(behind, at, below, beyond, picture):
+                                s = passing(
+                                    at,
+                                    below,
+                                    kind,
+                                    m,
+                                    eye,
+                                    ray,
+                                    down,
+                                    step,
+                                    vis,
+                                    vertices,
+                                    position,
+                                    faces,
+                                    joined,
+                                    counts,
+                                )
+                            code |= coded(kind, s) << 8
+                    found[at] = code
+
+
+@ti.func
+def moved(at, stride, bits, before, after, reach, found: ti.template()):
     """What a pixel gets of the one before it on a line and of the one after it, and whether edges are known.
 
-    stride: from one to the next; before, after: how many there are. Around an edge all is moved with it, so
-    that a line of ink keeps its width.
+    stride: from one to the next; bits: where edges across the line are in ``found``; before, after: how many
+    pixels there are; reach: how many pixels from an edge are moved with it, so that lines keep their width
     """
     from_before, from_after = 0.0, 0.0
     known = False
     if before > 1 and after > 1:
-        back, on = at - stride, at + stride
-        far_back, far_on = back - stride, on + stride
-        ends_before = border(far_back, back, at, on, edge, vis)
-        ends_after = border(back, at, on, far_on, edge, vis)
+        left, right = found[at - stride] >> bits & 255, found[at] >> bits & 255
         # what is thin and bends beside its outline moves with that, also where that is a pixel or two further
         further = 0
-        # lines of what moves are up to two pixels wide
-        reach = 2 if triangle(vis, at) >= counts[0] else 1
         for away in range(1, reach + 1):
-            if ti.max(ends_before, ends_after) < OUTLINE and before > away and after > away:
-                p, q = at - away * stride, at + away * stride
-                p_on, q_on = p - stride, q + stride
-                limit = p_on - stride if before > away + 1 else p_on
-                before_that = border(limit, p_on, p, p + stride, edge, vis)
-                limit = q_on + stride if after > away + 1 else q_on
-                after_that = border(q - stride, q, q_on, limit, edge, vis)
-                if ti.max(before_that, after_that) > ti.max(ends_before, ends_after):
-                    ends_before, ends_after, further = before_that, after_that, away
-        most = ti.max(ends_before, ends_after)
-        for k in range(2):
-            kind = ends_before if k == 0 else ends_after
-            if kind != 0 and kind == most:
-                steps = further if k == 1 else -1 - further
-                s = passing(
-                    at + steps * stride,
-                    at + (steps + 1) * stride,
-                    kind,
-                    m,
-                    eye,
-                    ray + step * ti.cast(steps, ti.f32),
-                    step,
-                    beside,
-                    vis,
-                    vertices,
-                    position,
-                    faces,
-                    joined,
-                    counts,
-                )
-                if s < NEVER:
-                    known = True
-                    # where something ends on both sides, only what comes over the border counts
-                    alone = further < reach and ends_before != ends_after
-                    if k == 0 or alone:
-                        from_before = greater(from_before, s)
-                    if k == 1 or alone:
-                        from_after = greater(from_after, -s)
+            if ti.max(kind_of(left), kind_of(right)) < OUTLINE and before > away and after > away:
+                p, q = found[at - (away + 1) * stride] >> bits & 255, found[at + away * stride] >> bits & 255
+                if ti.max(kind_of(p), kind_of(q)) > ti.max(kind_of(left), kind_of(right)):
+                    left, right, further = p, q, away
+        most = ti.max(kind_of(left), kind_of(right))
+        # where something ends on both sides, only what comes over the border counts
+        alone = further < reach and kind_of(left) != kind_of(right)
+        if most != 0 and kind_of(left) == most and left & UNKNOWN != UNKNOWN:
+            known = True
+            s = ti.cast((left & UNKNOWN) - 1, ti.f32) * (1.0 / STEPS) - 0.5
+            from_before = greater(s, 0.0)
+            if alone:
+                from_after = greater(-s, 0.0)
+        if most != 0 and kind_of(right) == most and right & UNKNOWN != UNKNOWN:
+            known = True
+            s = ti.cast((right & UNKNOWN) - 1, ti.f32) * (1.0 / STEPS) - 0.5
+            from_after = greater(from_after, -s)
+            if alone:
+                from_before = greater(from_before, s)
     return from_before, from_after, known
 
 

@@ -14,7 +14,7 @@ import taichi as ti
 from . import crew
 from .edges import moved, scaled_down
 from .gather import LANES, I, V, fv, iv
-from .geometry import f1, f2, f3, greater, i1, i2, lesser, part3, rays, u8s, u32s, u64s
+from .geometry import f1, greater, i1, lesser, triangle, u8s, u32s, u64s
 from .paint import RUN as BLOCK
 from .paint import SMOOTH, decode
 
@@ -147,48 +147,22 @@ def drawn_to_edges(
     at,
     width,
     height,
-    m,
-    eye,
-    first,
-    step,
-    down,
+    static_faces,
     src: ti.template(),
-    edge: ti.template(),
     vis: ti.template(),
-    vertices: ti.template(),
-    position: ti.template(),
-    faces: ti.template(),
-    joined: ti.template(),
-    counts,
+    edges: ti.template(),
+    fine,
     linear: ti.template(),
     table: ti.template(),
 ):
-    """A pixel moved with the edges near it, and whether these are known.
-
-    m: moment of the picture; eye, first, step, down: the rays of its row (see ``geometry.rays``)
-    """
-    ray = first + step * ti.cast(x, ti.f32)
-    a, b, beside = moved(
-        at, 1, x, width - 1 - x, m, eye, ray, step, down, edge, vis, vertices, position, faces, joined, counts
-    )
-    c, d, upright = moved(
-        at,
-        width,
-        y,
-        height - 1 - y,
-        m,
-        eye,
-        ray,
-        down,
-        step,
-        edge,
-        vis,
-        vertices,
-        position,
-        faces,
-        joined,
-        counts,
-    )
+    """A pixel moved with the edges near it, and whether these are known; fine: 0 if none are."""
+    a, b, c, d = 0.0, 0.0, 0.0, 0.0
+    beside, upright = False, False
+    if fine != 0:
+        # lines of what moves are up to two pixels wide
+        reach = 2 if triangle(vis, at) >= static_faces else 1
+        a, b, beside = moved(at, 1, 0, x, width - 1 - x, reach, edges)
+        c, d, upright = moved(at, width, 8, y, height - 1 - y, reach, edges)
     out = src[at]
     if a + b + c + d > LEAST:
         own = decode(out, linear)
@@ -213,19 +187,11 @@ def smoothed(
     at,
     width,
     height,
-    moment,
-    eye,
-    first,
-    step,
-    down,
+    static_faces,
     src: ti.template(),
-    edge: ti.template(),
     vis: ti.template(),
-    vertices: ti.template(),
-    position: ti.template(),
-    faces: ti.template(),
-    joined: ti.template(),
-    counts,
+    edges: ti.template(),
+    fine,
     linear: ti.template(),
     table: ti.template(),
 ):
@@ -240,26 +206,7 @@ def smoothed(
         high = greater(greater(greater(n, s), greater(w, e)), m)
         if high - low > enough(high):
             out, known = drawn_to_edges(
-                x,
-                y,
-                at,
-                width,
-                height,
-                moment,
-                eye,
-                first,
-                step,
-                down,
-                src,
-                edge,
-                vis,
-                vertices,
-                position,
-                faces,
-                joined,
-                counts,
-                linear,
-                table,
+                x, y, at, width, height, static_faces, src, vis, edges, fine, linear, table
             )
             if not known:
                 out = c
@@ -303,16 +250,10 @@ def near_marks(line, y, b, blocks, height, marks: ti.template()):
 
 @ti.kernel
 def smooth_rows(
-    view: f2,
-    moment: i1,
-    vertices: f2,
-    position: f3,
-    faces: i2,
-    joined: i2,
     static_faces: ti.i32,
-    static_vertices: ti.i32,
     vis: u64s,
-    edge: u32s,
+    edges: i1,
+    fine: ti.i32,
     src: u32s,
     marks: i1,
     level: i1,
@@ -331,9 +272,6 @@ def smooth_rows(
         line = crew.task(slot, views * height, queue, host)
         if line < views * height:
             y = line % height
-            eye, first, step = rays(view, line // height, y)
-            down = part3(view, line // height, 6) * (-1.0 / view[line // height, 13])
-            counts = ti.Vector([static_faces, static_vertices])
             blocks = (width + BLOCK - 1) // BLOCK
             for b in range(blocks):
                 if level[line * blocks + b] < SMOOTH:
@@ -344,26 +282,7 @@ def smooth_rows(
                     c = src[at]
                     if bits & 1:
                         c = smoothed(
-                            x,
-                            y,
-                            at,
-                            width,
-                            height,
-                            moment[line // height],
-                            eye,
-                            first,
-                            step,
-                            down,
-                            src,
-                            edge,
-                            vis,
-                            vertices,
-                            position,
-                            faces,
-                            joined,
-                            counts,
-                            linear,
-                            table,
+                            x, y, at, width, height, static_faces, src, vis, edges, fine, linear, table
                         )
                     bits >>= 1
                     final[3 * at] = ti.cast(c & 0xFF, ti.u8)
@@ -426,16 +345,10 @@ def pack(k, from_bytes: ti.template(), to_bytes: ti.template()):
 
 @ti.kernel
 def smooth_runs(
-    view: f2,
-    moment: i1,
-    vertices: f2,
-    position: f3,
-    faces: i2,
-    joined: i2,
     static_faces: ti.i32,
-    static_vertices: ti.i32,
     vis: u64s,
-    edge: u32s,
+    edges: i1,
+    fine: ti.i32,
     src: u32s,
     row: iv,
     quarter: bv,
@@ -470,9 +383,6 @@ def smooth_runs(
         line = crew.task(slot, views * height, queue, True)
         if line < views * height:
             y = line % height
-            eye, first, step = rays(view, line // height, y)
-            down = part3(view, line // height, 6) * (-1.0 / view[line // height, 13])
-            counts = ti.Vector([static_faces, static_vertices])
             for b in range(runs):
                 k = line * runs + b
                 if level[k] < SMOOTH:
@@ -537,26 +447,7 @@ def smooth_runs(
                     at = begin + i
                     x = b * LANES + i
                     c, known = drawn_to_edges(
-                        x,
-                        y,
-                        at,
-                        width,
-                        height,
-                        moment[line // height],
-                        eye,
-                        first,
-                        step,
-                        down,
-                        src,
-                        edge,
-                        vis,
-                        vertices,
-                        position,
-                        faces,
-                        joined,
-                        counts,
-                        linear,
-                        table,
+                        x, y, at, width, height, static_faces, src, vis, edges, fine, linear, table
                     )
                     if not known:
                         c = src[at]

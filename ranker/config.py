@@ -24,6 +24,7 @@ class ModelConfig:
     moments: whether a frame is described by where in it features are too, and not by how strong alone
     measures, marks: numbers of L_h of a shot, and of a frame, that are read off the features before the heads
         judge, 0 for none
+    guides: width of what is made of guides, 0 for none
     """
 
     movements: tuple[str, ...]
@@ -38,11 +39,12 @@ class ModelConfig:
     moments: bool = False
     measures: int = 0
     marks: int = 0
+    guides: int = 0
 
 
 @dataclass(frozen=True)
 class Phase:
-    """Some epochs at one picture size.
+    """Some epochs at one picture size; with a size of 0 pictures are left out, and guides alone looked at.
 
     frames, key_frames: how many of the stored frames the query and the key of L_q see; they never
     share one, so together they are at most all
@@ -65,6 +67,10 @@ class TrainConfig:
     dictionary, momentum, temperature: K, the momentum encoder's m and τ of L_q
     motion, moments: as in :class:`ModelConfig`; unmoved: share of the clips whose motion is kept from the
         heads, since a glance at a shot does not have it
+    guides: as in :class:`ModelConfig`, for clips that come with them; unguided: share of the clips whose
+        guides are kept from the network, so that it can judge by pictures alone
+    graded: how much less than 1 the label of a good clip is that is only just good enough, where clips say
+        how good they are
     smoothing: label smoothing; held_out: share of the clips, by whole groups, kept for evaluation
     calibration: batches over which batch-norm statistics are taken anew at full size at the end
     autocast: compute in bfloat16 where the network allows; augment: mirror, and vary the light
@@ -87,6 +93,9 @@ class TrainConfig:
     motion: int = 128
     moments: bool = True
     unmoved: float = 0.3
+    guides: int = 256
+    unguided: float = 0.3
+    graded: float = 0.3
     held_out: float = 0.15
     calibration: int = 40
     autocast: bool = True
@@ -144,7 +153,7 @@ def model_from_json(values: dict[str, Any]) -> ModelConfig:
     try:
         words = {k: tuple(str(w) for w in values[k]) for k in ("movements", "scales", "angles")}
         rest = {k: int(values[k]) for k in ("frames", "size", "contrast")}
-        rest |= {k: int(values.get(k, 0)) for k in ("motion", "measures", "marks")}
+        rest |= {k: int(values.get(k, 0)) for k in ("motion", "measures", "marks", "guides")}
         rest["inner"] = int(values.get("inner", rest["size"]))
         moments = bool(values.get("moments", False))
         config = ModelConfig(**words, backbone=str(values["backbone"]), moments=moments, **rest)  # type: ignore[arg-type]
@@ -159,6 +168,7 @@ def model_from_json(values: dict[str, Any]) -> ModelConfig:
         and 0 <= config.motion <= 4096
         and 0 <= config.measures <= 4096
         and 0 <= config.marks <= 4096
+        and 0 <= config.guides <= 4096
     ):
         raise RankerError("the ranker's config is not understood: sizes out of range")
     return config

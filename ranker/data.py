@@ -2,7 +2,10 @@
 
 A folder holds ``dataset.json`` (the words of the classes, picture size, frames a clip) and shards
 ``shard-00000.npy`` (uint8 [N, T, H, W, 3]) each with ``shard-00000.jsonl`` (one label a line). The
-label file is written last and is what makes a shard count, so writing can stop and go on anywhere.
+label file is written last and is what makes a shard count, so writing can stop and go on anywhere. Where
+clips come with guides (:mod:`ranker.guides`), these lie beside: ``shard-00000.maps.npy`` and ``.flow.npy``.
+Guides are had and learnt from far quicker than pictures, so a shard may have more of them: its last clips are
+*bare*, without frames.
 """
 
 from __future__ import annotations
@@ -22,6 +25,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .errors import RankerError
+from .guides import Guides, joined
 
 SCHEMA = "vds.dataset/1"
 SHARD = 64
@@ -49,6 +53,11 @@ class Label:
     split: str = ""
     about: dict[str, Any] = field(default_factory=dict)
 
+    @property
+    def bare(self) -> bool:
+        """Whether it has guides alone, and no frames."""
+        return bool(self.about.get("bare"))
+
 
 @dataclass(frozen=True)
 class Words:
@@ -64,8 +73,8 @@ class ShardWriter:
 
     size: (height, width) of the frames; shard: clips after which a shard is written, None for SHARD
     made: how the set is made, kept in its header: it is gone on with only by who says the same
-    ``len(writer)`` is how many clips are safely on disk, so a generator that draws its clips by index
-    starts again there. Use as a context manager.
+    ``len(writer)`` is how many clips with frames are safely on disk, so a generator that draws its clips by
+    index starts again there. Use as a context manager.
     """
 
     def __init__(
@@ -97,19 +106,19 @@ class ShardWriter:
         except (OSError, ValueError) as error:
             raise RankerError(f"{folder}: cannot be used as a training set: {error}") from error
         self._frames: list[NDArray[np.uint8]] = []
-        self._pending: list[Label] = []
+        self._pending: list[tuple[Label, Guides | None]] = []
 
     def __len__(self) -> int:
-        return len(self.labels)
+        return sum(not label.bare for label in self.labels)
 
     @property
     def pending(self) -> int:
-        """Clips that are not on disk yet."""
-        return len(self._pending)
+        """Clips with frames that are not on disk yet."""
+        return len(self._frames)
 
     def add(
         self,
-        frames: NDArray[np.uint8],
+        frames: NDArray[np.uint8] | None,
         label: bool,
         movement: str | None,
         scale: str | None,
@@ -118,9 +127,13 @@ class ShardWriter:
         strength: float,
         split: str = "",
         about: dict[str, Any] | None = None,
+        guides: Guides | None = None,
     ) -> None:
-        """Append a clip: uint8 [T, H, W, 3]; see :class:`Label` for the rest."""
-        if frames.shape != self.shape or frames.dtype != np.uint8:
+        """Append a clip: uint8 [T, H, W, 3], None for a bare one; guides: its own, of one shot, all clips of
+        a shard's or none's; see :class:`Label` for the rest."""
+        if frames is None and guides is None:
+            raise ValueError("a clip without frames needs guides")
+        if frames is not None and (frames.shape != self.shape or frames.dtype != np.uint8):
             raise ValueError(f"expected uint8 {self.shape}, got {frames.dtype} {frames.shape}")
         for word, known in (
             (movement, self.words.movements),
@@ -129,9 +142,15 @@ class ShardWriter:
         ):
             if word is not None and word not in known:
                 raise ValueError(f"{word!r} is not one of the set's words {known}")
-        self._frames.append(frames.copy())
-        made = Label(bool(label), movement, scale, angle, group, float(strength), split, about or {})
-        self._pending.append(made)
+        if self._pending and (guides is None) != (self._pending[0][1] is None):
+            self.flush()  # a shard has guides or has none
+        if guides is not None:
+            guides.check(1, self.shape[0], self.shape[0])
+        told = {**(about or {}), **({"bare": True} if frames is None else {})}
+        made = Label(bool(label), movement, scale, angle, group, float(strength), split, told)
+        self._pending.append((made, guides))
+        if frames is not None:
+            self._frames.append(frames.copy())
         if len(self._pending) >= self.shard:
             self.flush()
 
@@ -140,17 +159,25 @@ class ShardWriter:
         if not self._pending:
             return
         base = self.folder / f"shard-{self._next:05d}"
-        lines = "".join(json.dumps(asdict(label), ensure_ascii=False) + "\n" for label in self._pending)
+        ordered = sorted(self._pending, key=lambda clip: clip[0].bare)
+        lines = "".join(json.dumps(asdict(label), ensure_ascii=False) + "\n" for label, _ in ordered)
         part = self.folder / f".{base.name}.npy.part"
         try:
             with part.open("wb") as file:
-                np.save(file, np.stack(self._frames))
+                np.save(
+                    file, np.stack(self._frames) if self._frames else np.zeros((0, *self.shape), np.uint8)
+                )
             os.replace(part, base.with_suffix(".npy"))
+            found = [guides for _, guides in ordered if guides is not None]
+            if found:
+                guides = joined(found)
+                np.save(base.with_suffix(".maps.npy"), guides.maps)
+                np.save(base.with_suffix(".flow.npy"), guides.flow)
             _replace(base.with_suffix(".jsonl"), lines.encode())
         except OSError as error:
             part.unlink(missing_ok=True)
             raise RankerError(f"{base}.npy: cannot be written: {error.strerror or error}") from error
-        self.labels += self._pending
+        self.labels += [label for label, _ in ordered]
         self._next += 1
         self._frames, self._pending = [], []
 
@@ -178,18 +205,23 @@ class Dataset:
             self.labels: list[Label] = []
             self._where: list[tuple[int, int]] = []
             self._arrays: list[NDArray[np.uint8]] = []
+            guided: list[Guides] | None = []
             for number, path in enumerate(_shards(self.folder)):
                 labels = _labels(path)
                 array = np.load(path.with_suffix(".npy"), mmap_mode="r", allow_pickle=False)
                 if (
                     array.dtype != np.uint8
                     or array.ndim != 5
-                    or array.shape[:2] != (len(labels), self.frames)
+                    or array.shape[:2] != (sum(not label.bare for label in labels), self.frames)
                 ):
                     raise ValueError(f"{path.name} does not fit its frames")
                 self._arrays.append(array)
+                found = _guides(path, len(labels), self.frames)
+                guided = None if guided is None or found is None else [*guided, found]
                 self._where += [(number, i) for i in range(len(labels))]
                 self.labels += labels
+            #: Of all clips, None where some have none.
+            self.guided: list[Guides] | None = guided or None
         except (OSError, ValueError, KeyError, TypeError) as error:
             raise RankerError(f"{folder}: is not a training set, or a damaged one: {error}") from error
 
@@ -200,6 +232,17 @@ class Dataset:
         """Chosen frames of a clip, scaled to a square: uint8 [len(frames), size, size, 3]."""
         shard, row = self._where[index]
         return scaled(np.asarray(self._arrays[shard][row, list(frames)]), size)
+
+    def guides(self, clips: NDArray[np.int64], frames: Sequence[int] | None = None) -> Guides | None:
+        """Guides of chosen clips, or of some of their frames; None in a set where not all have some."""
+        if self.guided is None:
+            return None
+        maps, flow = [], []
+        for shard, row in (self._where[i] for i in clips):
+            of = self.guided[shard]
+            maps.append(of.maps[row] if frames is None else of.maps[row, list(frames)])
+            flow.append(of.flow[row])
+        return Guides(np.stack(maps), np.stack(flow))
 
     def shards(self) -> Iterator[tuple[Path, NDArray[np.uint8]]]:
         """The files of the frames in order, and what is in each: uint8 [n, T, H, W, 3]."""
@@ -233,6 +276,24 @@ class Dataset:
         """float32 [N]: 1 for positives."""
         return np.array([la.professional for la in self.labels], np.float32)
 
+    @cached_property
+    def bare(self) -> NDArray[np.bool_]:
+        """Clips [N] that have guides alone, and no frames."""
+        return np.array([label.bare for label in self.labels], bool)
+
+    @cached_property
+    def doubtful(self) -> NDArray[np.bool_]:
+        """Clips [N] whose label is not to be learnt or measured by (``doubtful`` of a label's ``about``): bad
+        ones for reasons that no picture shows, say. Everything else that is known of them counts."""
+        return np.array([bool(label.about.get("doubtful")) for label in self.labels], bool)
+
+    @cached_property
+    def grade(self) -> NDArray[np.float32]:
+        """How good positives are among themselves, float32 [N], 0..1: ``grade`` of a label's ``about``, 1
+        where that does not say; 0 for negatives."""
+        told = [float(label.about.get("grade", 1.0)) if label.professional else 0.0 for label in self.labels]
+        return np.array(told, np.float32)
+
     def split(self, share: float, seed: int) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
         """Indices to train on, and held out: whole groups in a random order until ``share`` is reached.
 
@@ -258,11 +319,12 @@ class Dataset:
 
     def about(self) -> dict[str, Any]:
         """Counts, for the record beside the weights."""
-        positives = int(self.professional.sum())
+        framed = self.professional[~self.bare]
         return {
-            "clips": len(self),
-            "positives": positives,
-            "negatives": len(self) - positives,
+            "clips": len(framed),
+            "positives": int(framed.sum()),
+            "negatives": len(framed) - int(framed.sum()),
+            **({"bare": int(self.bare.sum())} if self.bare.any() else {}),
             "groups": len({la.group for la in self.labels}),
             **({"made": self.made} if self.made else {}),
         }
@@ -301,6 +363,18 @@ def scaled(frames: NDArray[np.uint8], size: int) -> NDArray[np.uint8]:
 
 def _shards(folder: Path) -> list[Path]:
     return sorted(folder.glob("shard-*.jsonl"))
+
+
+def _guides(path: Path, clips: int, frames: int) -> Guides | None:
+    """What lies beside a shard; the maps stay on disk until asked for."""
+    if not path.with_suffix(".maps.npy").exists():
+        return None
+    found = Guides(
+        np.load(path.with_suffix(".maps.npy"), mmap_mode="r", allow_pickle=False),
+        np.load(path.with_suffix(".flow.npy"), allow_pickle=False),
+    )
+    found.check(clips, frames, frames)
+    return found
 
 
 def _labels(path: Path) -> list[Label]:

@@ -10,6 +10,7 @@ import torch
 from numpy.typing import NDArray
 
 from .data import Dataset, scaled
+from .guided import Guided
 from .infer import Ranker, Scores
 from .model import ShotRanker, frame_times, normalised
 from .motion import motion
@@ -20,39 +21,43 @@ _AT_ONCE = 32
 Floats = NDArray[np.floating]
 
 
-def evaluate(model: ShotRanker | Ranker, data: Dataset, clips: NDArray[np.int64]) -> dict[str, Any]:
+def evaluate(
+    model: ShotRanker | Ranker, data: Dataset, clips: NDArray[np.int64], guided: bool = True
+) -> dict[str, Any]:
     """Measure on the given clips, at the full picture size, as :class:`Ranker` scores them.
 
+    guided: with the guides of the clips, if they have some
     ``auc``, ``auc_by_strength {upper end: auc}``, ``auc_by_kind`` (of negatives that say their kind),
     ``accuracy {movement, scale, angle, professional}`` (classes over positives), ``clips``; a value is None
-    where there is nothing to measure it on
+    where there is nothing to measure it on. Doubtful clips count for none but ``clips``.
     """
     ranker = model if isinstance(model, Ranker) else Ranker(_copy(model))
     classes, label = data.classes[clips], data.professional[clips] > 0.5
     margin, right = np.zeros(len(clips)), np.full((len(clips), 3), np.nan)
     for begin in range(0, len(clips), _AT_ONCE):
         rows = slice(begin, begin + _AT_ONCE)
-        scores = ranker.score(_frames(ranker, data, clips[rows]))
+        scores = ranker.score(
+            _frames(ranker, data, clips[rows]), data.guides(clips[rows]) if guided else None
+        )
         margin[rows] = scores.margin
         right[rows] = _right(scores, classes[rows])
+    sure = ~data.doubtful[clips]
     strength = np.array([data.labels[i].strength for i in clips])
     kind = np.array([str(data.labels[i].about.get("kind", "")) for i in clips], object)
     by_strength, low = {}, -np.inf
     for high in STRENGTHS:
-        chosen = label | (~label & (strength > low) & (strength <= high))
+        chosen = sure & (label | ((strength > low) & (strength <= high)))
         by_strength[f"{high:g}"] = auc(margin[chosen], label[chosen])
         low = high
-    kinds = sorted(set(kind[~label]) - {""})
+    among = {k: sure & (label | (kind == k)) for k in sorted(set(kind[~label]) - {""})}
     return {
         "clips": len(clips),
-        "auc": auc(margin, label),
+        "auc": auc(margin[sure], label[sure]),
         "auc_by_strength": by_strength,
-        "auc_by_kind": {
-            k: auc(margin[label | (kind == k)], (label | (kind != k))[label | (kind == k)]) for k in kinds
-        },
+        "auc_by_kind": {k: auc(margin[of], label[of]) for k, of in among.items()},
         "accuracy": {
             **{k: mean(right[label, i]) for i, k in enumerate(("movement", "scale", "angle"))},
-            "professional": mean(((margin > 0) == label).astype(float)),
+            "professional": mean(((margin > 0) == label)[sure].astype(float)),
         },
     }
 
@@ -72,11 +77,15 @@ def agreement_with_fp32(
     model.eval()
     for clip in clips:
         frames = _frames(ranker, data, np.array([clip]))
-        quick.append(float(ranker.score(frames).margin[0]))
+        guides = data.guides(np.array([clip])) if model.config.guides else None
+        quick.append(float(ranker.score(frames, guides).margin[0]))
         with torch.inference_mode():
-            moved = motion(torch.from_numpy(frames).to(device)) if model.config.motion else None
+            moved = None
+            if model.config.motion and guides is None:
+                moved = motion(torch.from_numpy(frames).to(device))
+            guided = None if guides is None else Guided.of(guides, times[0])
             pictures = torch.from_numpy(scaled(frames[0], model.config.inner)[None]).to(device)
-            exact.append(float(model(normalised(pictures), times, moved).logit[0]))
+            exact.append(float(model(normalised(pictures), times, moved, guided).logit[0]))
     return spearman(np.array(exact), np.array(quick))
 
 

@@ -24,6 +24,8 @@ from .config import ModelConfig
 from .data import scaled
 from .engine import has_vnni
 from .errors import RankerError
+from .guided import Guided
+from .guides import Guides
 from .int8 import Int8Backbone, Ranges
 from .model import Output, ShotRanker, frame_times, normalised
 from .motion import motion
@@ -89,25 +91,28 @@ class Ranker:
                 "train others with `vdsc train`, or go on without the ranker with `--rank geometry`"
             )
 
-    def score(self, frames: NDArray[np.uint8]) -> Scores:
-        """Judge shots: uint8 [P, frames, size, size, 3] sRGB, frames evenly spaced from first to last."""
+    def score(self, frames: NDArray[np.uint8], guides: Guides | None = None) -> Scores:
+        """Judge shots: uint8 [P, frames, size, size, 3] sRGB, frames evenly spaced from first to last.
+
+        guides: theirs, where whoever drew them tells; weights that know nothing of such leave them out
+        """
         size = self.config.size
         expected = (self.config.frames, size, size, 3)
         if frames.ndim != 5 or frames.shape[1:] != expected or frames.dtype != np.uint8:
             raise ValueError(
                 f"expected uint8 [P, {', '.join(map(str, expected))}], got {frames.dtype} {frames.shape}"
             )
-        parts = [self._score(frames[i : i + self._batch]) for i in range(0, len(frames), self._batch)]
-        if not parts:
-            parts = [self._score(np.zeros((0, *expected), np.uint8))]
+        guides = self._used(guides, frames)
+        rows = [slice(i, i + self._batch) for i in range(0, max(len(frames), 1), self._batch)]
+        parts = [self._score(frames[r], None if guides is None else guides[r]) for r in rows]
         joined = {f.name: np.concatenate([getattr(p, f.name) for p in parts]) for f in fields(Scores)}
         return Scores(**joined)
 
     @torch.inference_mode()
-    def glance(self, frames: NDArray[np.uint8], at: Sequence[int]) -> Scores:
+    def glance(self, frames: NDArray[np.uint8], at: Sequence[int], guides: Guides | None = None) -> Scores:
         """Judge shots by some of their frames: uint8 [P, k, size, size, 3], the frames ``at`` of all.
 
-        In the last bits they depend on what is looked at together.
+        guides: of these frames. In the last bits scores depend on what is looked at together.
         """
         size, at = self.config.size, list(at)
         if not at or frames.shape[1:] != (len(at), size, size, 3) or frames.dtype != np.uint8:
@@ -118,7 +123,17 @@ class Ranker:
         room = self._batch * self.config.frames
         parts = [self._encoded(flat[i : i + room]) for i in range(0, max(len(flat), 1), room)]
         features = torch.cat(parts).view(len(frames), len(at), self._model.described)
-        return _scores(self._model.judge(features, self._times[at].expand(len(frames), -1)))
+        guides, times = self._used(guides, frames), self._times[at]
+        guided = None if guides is None else Guided.of(guides, times)
+        return _scores(self._model.judge(features, times.expand(len(frames), -1), None, guided))
+
+    def _used(self, guides: Guides | None, frames: NDArray[np.uint8]) -> Guides | None:
+        """The guides of shots, if these weights take any. Raises ValueError where they do not fit the
+        frames."""
+        if guides is None or not self.config.guides:
+            return None
+        guides.check(frames.shape[0], frames.shape[1], self.config.frames)
+        return guides
 
     def _encoded(self, pictures: NDArray[np.uint8]) -> Tensor:
         """Features [N, D] of N pictures, no more than go through at once."""
@@ -128,12 +143,15 @@ class Ranker:
         return self._features(torch.from_numpy(padded).to(self.device))[:count]
 
     @torch.inference_mode()
-    def _score(self, frames: NDArray[np.uint8]) -> Scores:
+    def _score(self, frames: NDArray[np.uint8], guides: Guides | None) -> Scores:
         count = len(frames)
         features = self._encoded(frames.reshape(-1, *frames.shape[2:]))
         features = features.view(count, self.config.frames, self._model.described)
-        moved = motion(torch.from_numpy(frames).to(self.device)) if self.config.motion else None
-        return _scores(self._model.judge(features, self._times.expand(count, -1), moved))
+        times, moved = self._times.expand(count, -1), None
+        if guides is None and self.config.motion:  # guides tell how the camera moves
+            moved = motion(torch.from_numpy(frames).to(self.device))
+        guided = None if guides is None else Guided.of(guides, self._times)
+        return _scores(self._model.judge(features, times, moved, guided))
 
     def _eight(self, folded: nn.Module, ranges: Ranges | None) -> Encoder | None:
         """The frame encoder in eight bits, None where that cannot be or would not be quicker."""

@@ -10,10 +10,13 @@ from torch.nn import functional
 def binary_loss(logit: Tensor, label: Tensor, smoothing: float = 0.0) -> Tensor:
     """L_b = −[y log p_b + (1 − y) log(1 − p_b)], the mean over [B] (as printed it has a sign slip).
 
-    label: 1 for professional, 0 for not, [B]; smoothing pulls both towards a half
+    label: 1 for professional, 0 for not, [B], NaN for what is not known; smoothing pulls both towards a half
     """
-    target = label.float() * (1 - smoothing) + smoothing / 2
-    return functional.binary_cross_entropy_with_logits(logit, target)
+    known = label.isfinite()
+    if not known.any():
+        return logit.new_zeros(())
+    target = label[known].float() * (1 - smoothing) + smoothing / 2
+    return functional.binary_cross_entropy_with_logits(logit[known], target)
 
 
 def class_loss(logits: tuple[Tensor, ...], labels: tuple[Tensor, ...], smoothing: float = 0.0) -> Tensor:

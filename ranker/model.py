@@ -5,9 +5,10 @@ section 3.3). The fusion is TSN's average consensus and, beside it, the slope an
 features over time: an average alone cannot tell a pan to the left from one to the right. How well a picture
 is composed hangs on where things are in it, which the average over the picture of a ResNet forgets; so its
 first moments go along (:class:`Pool`). What single frames do not show, how the picture moves as a whole,
-comes in as numbers (:mod:`ranker.motion`). And where clips come with what is known of them in numbers (L_h),
-of the shot and of each frame, those are told first and judged by (a concept bottleneck, Koh et al. 2020, with
-the features beside it).
+comes in as numbers (:mod:`ranker.motion`), or better from the guides of whoever draws the pictures, which
+say who is where in them as well (:mod:`ranker.guides`). And where clips come with what is known of them in
+numbers (L_h), of the shot and of each frame, those are told first and judged by (a concept bottleneck, Koh et
+al. 2020, with the features beside it).
 """
 
 from __future__ import annotations
@@ -19,7 +20,9 @@ from torch import Tensor, nn
 from torch.nn import functional
 
 from .config import ModelConfig
-from .motion import NUMBERS, pairs
+from .guided import Guided, GuideNet
+from .guides import pairs
+from .motion import NUMBERS
 from .vision import torchvision_models
 
 #: Of sRGB in 0..1, by channel, as ResNets are used to.
@@ -32,7 +35,8 @@ class Output(NamedTuple):
 
     logit [B], of p_b; movement, scale, angle [B, classes], logits of p_c; feature [B, D], the average
     of the frames' features; contrast [B, C], unit vectors z of L_q; told [B, measures], what is read off the
-    features of the numbers of L_h; marked [B, T, marks], the same of single frames
+    features of the numbers of L_h; marked [B, T, marks], the same of single frames; mapped [B, T, marks],
+    what is told of frames by their guides
     """
 
     logit: Tensor
@@ -43,6 +47,16 @@ class Output(NamedTuple):
     contrast: Tensor
     told: Tensor
     marked: Tensor
+    mapped: Tensor
+
+
+class _Mapped(NamedTuple):
+    """What is made of guides: of frames [B, T, described], of shots [B, guides]; whether there were any [B,
+    1]."""
+
+    frames: Tensor
+    shot: Tensor
+    known: Tensor
 
 
 class Pool(nn.Module):
@@ -105,44 +119,96 @@ class ShotRanker(nn.Module):
             known = config.measures + 3 * config.marks
             reasons = nn.Sequential(nn.Linear(known, 128), nn.ReLU(), nn.Dropout(0.2))
             self.reasons = nn.Sequential(*reasons, nn.Linear(128, 1 + sum(sizes)))
+        self.guided: GuideNet | None = None
+        if config.guides:
+            self.guided = GuideNet(config.frames)
+            before, wide = 5 * self.guided.described + self.guided.motion, 2 * config.guides
+            gathered = nn.Sequential(nn.Linear(before, wide), nn.ReLU(), nn.Dropout(0.2))
+            last = nn.Sequential(nn.Linear(wide, config.guides), nn.ReLU(), nn.Dropout(0.2))
+            self.gathered = nn.Sequential(*gathered, *last)
+            self.judged = nn.Linear(config.guides, 1 + sum(sizes))
+            if config.measures:
+                self.reader_guided = nn.Linear(config.guides, config.measures)
+            if config.marks:
+                self.marker_guided = nn.Linear(self.guided.described, config.marks)
 
-    def forward(self, frames: Tensor, times: Tensor, moved: Tensor | None = None) -> Output:
+    def forward(
+        self,
+        frames: Tensor | None,
+        times: Tensor,
+        moved: Tensor | None = None,
+        guides: Guided | None = None,
+    ) -> Output:
         """Judge shots: ``frames`` [B, T, 3, H, W] as :func:`normalised`, ``times`` [B, T] in 0..1.
 
         moved: their motion [B, pairs, NUMBERS]; NaN, or None for all, where that is not known
+        guides: theirs, or None; frames: None to judge by these alone
         """
-        batch, count = frames.shape[:2]
+        batch, count = times.shape
+        if frames is None:
+            nothing = torch.zeros(batch, count, self.described, device=times.device)
+            return self.judge(nothing, times, moved, guides, pictures=False)
         flat = frames.flatten(0, 1).contiguous(memory_format=torch.channels_last)
         features = self.backbone(flat).float().view(batch, count, self.described)
-        return self.judge(features, times, moved)
+        return self.judge(features, times, moved, guides)
 
-    def judge(self, features: Tensor, times: Tensor, moved: Tensor | None = None) -> Output:
-        """The heads over what describes single frames [B, T, described], in float32."""
+    def judge(
+        self,
+        features: Tensor,
+        times: Tensor,
+        moved: Tensor | None = None,
+        guides: Guided | None = None,
+        pictures: bool = True,
+    ) -> Output:
+        """The heads over what describes single frames [B, T, described], in float32.
+
+        pictures: whether there were any, and not features of nothing
+        """
         with torch.autocast(features.device.type, enabled=False):
             average = features[:, :, : self.width].mean(1)
             fused = fuse(features, times)
-            professional, movement = self.professional(fused), self.movement(fused)
-            scale, angle = self.scale(fused), self.angle(fused)
-            seen = self._seen(moved)
+            heads = (self.professional, self.movement, self.scale, self.angle)
+            sizes = [head.out_features for head in heads]
+            judged = fused.new_zeros(len(fused), sum(sizes))
+            if pictures:
+                judged = torch.cat([head(fused) for head in heads], 1)
+            seen, maps = self._seen(moved), self._mapped(guides)
             if seen is not None:
-                professional = professional + self.professional_moved(seen)
-                movement = movement + self.movement_moved(seen)
+                more = torch.cat([self.professional_moved(seen), self.movement_moved(seen)], 1)
+                judged = judged + functional.pad(more, (0, judged.shape[1] - more.shape[1]))
+            if maps is not None:
+                judged = judged + self.judged(maps.shot) * maps.known
             told, marked = fused.new_zeros(len(fused), 0), features.new_zeros(*features.shape[:2], 0)
+            mapped = marked
             if self.reader is not None:
-                told = self.reader(fused)
+                told = self.reader(fused) if pictures else fused.new_zeros(len(fused), self.config.measures)
                 if seen is not None:
                     told = told + self.reader_moved(seen)
-                sizes = [1, movement.shape[1], scale.shape[1], angle.shape[1]]
-                known = told
+                if maps is not None:
+                    told = told + self.reader_guided(maps.shot) * maps.known
+                known = [told]
                 if self.config.marks:
                     marked = self.marker(features)
-                    known = torch.cat([told, fuse(marked, times)], 1)
-                more = self.reasons(known).split(sizes, 1)
-                professional, movement, scale, angle = (
-                    a + b for a, b in zip((professional, movement, scale, angle), more, strict=True)
-                )
+                    over_time = fuse(marked, times)
+                    if maps is not None and guides is not None:
+                        mapped = self.marker_guided(maps.frames)
+                        over_time = torch.where(maps.known > 0, fuse(mapped, guides.times), over_time)
+                    known.append(over_time)
+                judged = judged + self.reasons(torch.cat(known, 1))
+            professional, movement, scale, angle = judged.split(sizes, 1)
             contrast = functional.normalize(self.contrast(average), dim=1)
-            return Output(professional.squeeze(1), movement, scale, angle, average, contrast, told, marked)
+            return Output(
+                professional.squeeze(1), movement, scale, angle, average, contrast, told, marked, mapped
+            )
+
+    def _mapped(self, guides: Guided | None) -> _Mapped | None:
+        if self.guided is None or guides is None:
+            return None
+        frames, motion = self.guided(guides)
+        # what is amiss only for a time is seen by extremes
+        over_time = [fuse(frames, guides.times), frames.amin(1), frames.amax(1)]
+        shot = self.gathered(torch.cat([*over_time, motion], 1))
+        return _Mapped(frames, shot, guides.known.float().unsqueeze(1))
 
     def _seen(self, moved: Tensor | None) -> Tensor | None:
         """What is made of the motion of shots; zeros where it is not known."""

@@ -19,12 +19,12 @@ from torch import Tensor
 from torch.nn import functional
 
 from .data import Dataset
+from .guides import pairs
 
 SIDE = 56  # pixels of the small pictures that are matched
 GRID = 7  # blocks along one
 REACH = 8  # pixels that a block may have moved, either way
 NUMBERS = 8  # of a pair: shift x, y; x and y along x; x and y along y; what is left over; share that fits
-_APART = 3  # frames between those of the longer pairs
 _LUMA = (0.299, 0.587, 0.114)  # of sRGB, by channel (BT.601)
 _WINDOW = 9  # pixels over which brightness is made even
 _NOISE = 4.0  # steps of 255 that count for nothing
@@ -32,14 +32,6 @@ _ROUNDS, _OUTLIER = 4, 0.5  # of the fit; pixels off it at which a block counts 
 _AT_ONCE = 2  # clips
 #: Signs of the numbers of a pair in the mirror.
 _MIRROR = (-1.0, 1.0, 1.0, -1.0, -1.0, 1.0, 1.0, 1.0)
-
-
-def pairs(frames: int) -> list[tuple[int, int]]:
-    """The pairs of frames that are matched: neighbours, some further apart for slow movements, both ends."""
-    near = [(i, i + 1) for i in range(frames - 1)]
-    far = [(i, i + _APART) for i in range(0, frames - _APART, 2)]
-    ends = [(0, frames - 1)] if frames > 2 else []
-    return list(dict.fromkeys(near + far + ends))
 
 
 def motion(frames: Tensor) -> Tensor:
@@ -61,7 +53,7 @@ def mirrored(moved: Tensor) -> Tensor:
 
 
 def motions(data: Dataset) -> NDArray[np.float32]:
-    """The motion of all clips of a training set, float32 [N, pairs, NUMBERS].
+    """The motion of all clips of a training set, float32 [N, pairs, NUMBERS]; NaN for bare ones.
 
     What was worked out is kept beside each shard, ``shard-00000.motion.npy``, where that can be written.
     """
@@ -78,7 +70,9 @@ def motions(data: Dataset) -> NDArray[np.float32]:
         found.append(_of_shard(frames, device))
         with suppress(OSError):
             np.save(kept, found[-1])
-    return np.concatenate(found)
+    out = np.full((len(data), *shape), np.nan, np.float32)
+    out[~data.bare] = np.concatenate(found)
+    return out
 
 
 def _of_shard(frames: NDArray[np.uint8], device: torch.device) -> NDArray[np.float32]:
@@ -89,6 +83,8 @@ def _of_shard(frames: NDArray[np.uint8], device: torch.device) -> NDArray[np.flo
         clips = torch.from_numpy(np.array(frames[begin : begin + _AT_ONCE]))
         return motion(clips.to(device)).float().cpu().numpy()
 
+    if not len(frames):
+        return np.zeros((0, len(pairs(frames.shape[1])), NUMBERS), np.float32)
     threads = torch.get_num_threads()
     torch.set_num_threads(1)
     try:

@@ -29,6 +29,8 @@ from .data import MIRRORED, Dataset
 from .dictionary import Dictionary, follow, momentum_copy
 from .errors import RankerError
 from .evaluate import agreement_with_fp32, evaluate, mean
+from .guided import Guided
+from .guides import Guides
 from .infer import Ranker, fold_batch_norm
 from .int8 import Ranges, measured_ranges
 from .losses import binary_loss, class_loss, contrast_loss, hint_loss
@@ -46,10 +48,13 @@ Report = Callable[[dict[str, Any]], None]
 class Batch(NamedTuple):
     """Clips of one step: frames uint8 [B, T, S, S, 3] and times [B, T] of query and key; labels.
 
-    hints [B, K], marks [B, T, M] of the query's frames, moved [B, pairs, NUMBERS]: NaN is not known
+    query: None where guides alone are looked at; professional: 1 or less for good ones, by their grade,
+        NaN for doubtful ones
+    hints [B, K], marks [B, T, M] of the query's frames, mapped [B, T, M] of all: NaN is not known
+    moved [B, pairs, NUMBERS], likewise; guides of all frames, with zeros for maps where they are kept back
     """
 
-    query: Tensor
+    query: Tensor | None
     query_times: Tensor
     key: Tensor
     key_times: Tensor
@@ -57,7 +62,9 @@ class Batch(NamedTuple):
     classes: Tensor
     hints: Tensor
     marks: Tensor
+    mapped: Tensor
     moved: Tensor | None
+    guides: Guided | None
     clips: Tensor
 
 
@@ -84,7 +91,9 @@ def train(
     # The clips: whole groups are kept back.
     data = Dataset(data_dir)
     learn, held = data.split(config.held_out, config.seed)
-    if len(learn) < 2:
+    held = held[~data.bare[held]]
+    framed = learn[~data.bare[learn]]  # the others are for phases that look at guides alone
+    if len(framed) < 2:
         raise RankerError(f"{data_dir}: there are too few clips to train on")
 
     # The network, the encoder of the keys that follows it, and the dictionary of keys.
@@ -101,7 +110,10 @@ def train(
         moments=config.moments,
         measures=len(data.hints[0]) if config.hint_weight else 0,
         marks=len(data.frame_hints[0]) if config.hint_weight and data.hints[0] else 0,
+        guides=config.guides if data.guided is not None else 0,
     )
+    if not shape.guides and any(phase.size == 0 for phase in config.phases):
+        config = replace(config, phases=tuple(phase for phase in config.phases if phase.size))
     moved = torch.from_numpy(motions(data)) if config.motion else None
     model = ShotRanker(shape)
     began = take_over(model, start) if start else None
@@ -113,7 +125,8 @@ def train(
 
     # Where an earlier run stopped.
     schedule = [phase for phase in config.phases for _ in range(phase.epochs)]
-    lengths = [math.ceil(_count(learn, phase) / phase.batch) for phase in schedule]
+    pools = [framed if phase.size else learn for phase in schedule]
+    lengths = [math.ceil(_count(*of) / of[1].batch) for of in zip(pools, schedule, strict=True)]
     state = out / "checkpoint.pt"
     learning = {"model": model, "keys": keys, "dictionary": dictionary, "optimizer": optimizer}
     done, step = _resume(state, config, learning)
@@ -125,7 +138,7 @@ def train(
             torch.manual_seed(config.seed + 1 + epoch)  # what is dropped out hangs on the epoch alone
             model.train()
             sums = np.zeros(5)
-            for batch in _batches(data, learn, phase, config, epoch, moved):
+            for batch in _batches(data, pools[epoch], phase, config, epoch, moved):
                 for group in optimizer.param_groups:
                     group["lr"] = group["pace"] * learning_rate(config, step, sum(lengths))
 
@@ -136,7 +149,8 @@ def train(
                 loss.backward()
                 nn.utils.clip_grad_norm_(model.parameters(), 5.0)
                 optimizer.step()
-                follow(keys, model, config.momentum)
+                if batch.query is not None:
+                    follow(keys, model, config.momentum)
 
                 step += 1
                 sums += [float(loss.detach()), *(float(p.detach()) for p in parts)]
@@ -150,14 +164,17 @@ def train(
             }
             line |= {n: round(float(v) / lengths[epoch], 5) for n, v in zip(names, sums, strict=True)}
             line["held_out"] = watch(model, data, held, phase.size, config, device, moved)
+            if phase.size and shape.guides:  # and by pictures alone, as real clips are judged
+                alone = replace(config, unguided=1.0)
+                line["pictures_alone"] = watch(model, data, held, phase.size, alone, device, moved)
             line |= {"steps": sum(lengths), "seconds": round(time.monotonic() - clock, 1)}
             _tell(log, line, report)
             draw_curves(out)
             _keep(state, config, learning, epoch + 1, step)
 
         # Small pictures leave batch norm with the wrong statistics for full ones.
-        calibrate(model, data, learn, config, device)
-        ranges = int8_ranges(model.cpu(), data, learn, config.seed)
+        calibrate(model, data, framed, config, device)
+        ranges = int8_ranges(model.cpu(), data, framed, config.seed)
         save_weights(out / "weights", model, ranges=ranges)
 
         # Measured as it will be used: from the disk.
@@ -225,7 +242,7 @@ def watch(
     """Shares of some of the held-out clips that are judged rightly, at a picture size: for the curves."""
     some = np.random.default_rng(config.seed).permutation(held)[: config.watched]
     phase = Phase(1, size, data.frames, 0, batch=16)
-    plain = replace(config, augment=False, contrast_weight=0.0)
+    plain = replace(config, augment=False, contrast_weight=0.0, unguided=float(config.unguided == 1.0))
     was = model.training
     model.eval()
     right: list[NDArray[np.float64]] = []
@@ -236,6 +253,7 @@ def watch(
         found = np.stack([p.argmax(1).cpu().numpy() for p in (out.movement, out.scale, out.angle)], 1)
         known = (classes >= 0) & good[:, None]
         judged = ((out.logit > 0).cpu().numpy() == good).astype(float)[:, None]
+        judged[batch.professional.isnan().numpy()] = np.nan
         right.append(np.concatenate([judged, np.where(known, found == classes, np.nan)], 1))
     model.train(was)
     if not right:
@@ -260,16 +278,19 @@ def calibrate(
         if count == config.calibration:
             break
         with torch.autocast(device.type, torch.bfloat16, enabled=config.autocast):
+            assert batch.query is not None
             model(normalised(batch.query.to(device)), batch.query_times.to(device))
     for norm, momentum in zip(norms, kept, strict=True):
         norm.momentum = momentum
     model.eval()
 
 
-def _seen(batch: Batch, device: torch.device) -> tuple[Tensor, Tensor, Tensor | None]:
+def _seen(batch: Batch, device: torch.device) -> tuple[Tensor | None, Tensor, Tensor | None, Guided | None]:
     """What the network sees of a batch."""
     moved = None if batch.moved is None else batch.moved.to(device)
-    return normalised(batch.query.to(device)), batch.query_times.to(device), moved
+    guides = None if batch.guides is None else Guided(*(part.to(device) for part in batch.guides))
+    pictures = None if batch.query is None else normalised(batch.query.to(device))
+    return pictures, batch.query_times.to(device), moved, guides
 
 
 def _losses(
@@ -289,9 +310,11 @@ def _losses(
     hint = torch.zeros((), device=device)
     if config.hint_weight and batch.hints.shape[1]:
         hint = hint_loss(out.told, batch.hints.to(device))
-        if out.marked.shape[2]:
+        if out.marked.shape[2] and batch.query is not None:
             hint = hint + hint_loss(out.marked, batch.marks.to(device))
-    if config.contrast_weight == 0:
+        if out.mapped.shape[2]:
+            hint = hint + hint_loss(out.mapped, batch.mapped.to(device))
+    if config.contrast_weight == 0 or batch.query is None:
         return binary, classes, torch.zeros((), device=device), hint
     with torch.no_grad(), torch.autocast(device.type, torch.bfloat16, enabled=config.autocast):
         key = keys(normalised(batch.key.to(device)), batch.key_times.to(device)).contrast
@@ -345,6 +368,8 @@ def _batch(
     times = frame_times(ModelConfig((), (), (), frames=data.frames)).numpy()
     mirror = mirror_words(data.words.movements)
     count, keyed = phase.frames, phase.key_frames if config.contrast_weight else 0
+    if not phase.size:
+        count, keyed = data.frames, 0
     if count + keyed > data.frames:
         raise RankerError(f"query and key need {count + keyed} frames, the clips have {data.frames}")
     classes, hints = data.classes[clips], data.hints[1][clips]
@@ -352,40 +377,68 @@ def _batch(
         np.array([name.startswith(MIRRORED) for name in names], bool)
         for names in (data.hints[0], data.frame_hints[0])
     )
-    frames, places, marks = [], [], []
+    guides = data.guides(clips) if config.guides else None
+    frames, places, marks, mapped, maps, flow = [], [], [], [], [], []
     own = None if moved is None else moved[torch.from_numpy(clips)]
     for row, index in enumerate(clips):
-        chosen = rng.permutation(data.frames)
+        chosen = rng.permutation(data.frames) if phase.size else np.arange(data.frames)
         picked = np.concatenate([np.sort(chosen[:count]), np.sort(chosen[count : count + keyed])])
-        clip = data.clip(int(index), picked.tolist(), phase.size)
-        mark = data.frame_hints[1][index][picked[:count]]
-        if config.augment:
-            clip, flipped = varied(clip, rng)
-            if flipped:
-                hints[row, turned] *= -1
-                mark = np.where(turned_marks, -mark, mark)
-                if own is not None:
-                    own[row] = mirrored(own[row])
-                if classes[row, 0] >= 0:
-                    classes[row, 0] = mirror[classes[row, 0]]
-            if own is not None and rng.random() < config.unmoved:
-                own[row] = torch.nan
-        marks.append(mark)
-        frames.append(clip)
+        of_frames, flipped = data.frame_hints[1][index], False
+        if phase.size:
+            clip = data.clip(int(index), picked.tolist(), phase.size)
+            clip, flipped = varied(clip, rng) if config.augment else (clip, False)
+            frames.append(clip)
+        elif config.augment:
+            flipped = bool(rng.random() < 0.5)
+        if flipped:
+            hints[row, turned] *= -1
+            of_frames = np.where(turned_marks, -of_frames, of_frames)
+            if classes[row, 0] >= 0:
+                classes[row, 0] = mirror[classes[row, 0]]
+            if own is not None:
+                own[row] = mirrored(own[row])
+        if guides is not None:
+            told = guides[row : row + 1]
+            told = told.mirrored() if flipped else told
+            kept_back = phase.size > 0 and rng.random() < config.unguided
+            maps.append(told.maps * np.uint8(not kept_back))
+            flow.append(told.flow)
+            mapped.append(of_frames if not kept_back else np.full_like(of_frames, np.nan))
+        if own is not None and config.augment and rng.random() < config.unmoved:
+            own[row] = torch.nan
+        if own is not None and guides is not None and not kept_back:
+            own[row] = torch.nan  # what guides tell need not be guessed at
+        marks.append(of_frames[picked[:count]])
         places.append(times[picked])
-    pictures, moments = torch.from_numpy(np.stack(frames)), torch.from_numpy(np.stack(places))
+    pictures, moments = (
+        torch.from_numpy(np.stack(frames)) if frames else None,
+        torch.from_numpy(np.stack(places)),
+    )
+    professional = data.professional[clips] * (1 - config.graded * (1 - data.grade[clips]))
+    professional = np.where(data.doubtful[clips], np.nan, professional)
     return Batch(
-        pictures[:, :count],
+        None if pictures is None else pictures[:, :count],
         moments[:, :count],
-        pictures[:, count:],
+        moments[:, :0] if pictures is None else pictures[:, count:],
         moments[:, count:],
-        torch.from_numpy(data.professional[clips]),
+        torch.from_numpy(professional.astype(np.float32)),
         torch.from_numpy(classes),
         torch.from_numpy(hints),
         torch.from_numpy(np.stack(marks)),
+        torch.from_numpy(np.stack(mapped or marks)),
         own,
+        None if guides is None else _guided(np.concatenate(maps), np.concatenate(flow), times),
         torch.from_numpy(clips),
     )
+
+
+def _guided(maps: NDArray[np.uint8], flow: NDArray[np.float16], times: NDArray[np.float32]) -> Guided:
+    """Guides of a batch; motion of those that are kept back is not known."""
+    guided = Guided.of(
+        Guides(np.ascontiguousarray(maps), np.ascontiguousarray(flow)), torch.from_numpy(times)
+    )
+    flow_known = guided.known.view(-1, 1, 1, 1, 1)
+    return guided._replace(flow=torch.where(flow_known, guided.flow, torch.nan))
 
 
 def varied(clip: NDArray[np.uint8], rng: np.random.Generator) -> tuple[NDArray[np.uint8], bool]:

@@ -38,6 +38,7 @@ UPLOADED = (
     "sphere",
     "surface_object",
     "one_color",
+    "head",
     "casters",
     "area",
 )

@@ -17,7 +17,7 @@ from .device import Backend, vectorised
 from .film import film_table, to_encoded, to_linear
 from .loaded import Loaded
 from .moments import Moments
-from .types import Style
+from .types import GUIDE_SIDE, Style
 
 #: Rows of a picture above which its edges are drawn to a part of a pixel.
 FINE = 360
@@ -307,3 +307,28 @@ class Passes:
         """Which object each pixel shows, into ``objects`` [N, H, W]."""
         out = objects.reshape(-1)
         self._smooth.object_ids(layer.edge, loaded.arrays["surface_object"], out, len(out))
+
+    def guides(
+        self,
+        loaded: Loaded,
+        vis: Any,
+        roles: NDArray[np.uint8],
+        size: tuple[int, int],
+        out: NDArray[np.uint8],
+    ) -> None:
+        """What visibility buffers show cell by cell, into ``out`` (see ``types.GUIDES``)."""
+        from .kernels import guides  # only where they are asked for: it is compiled then
+
+        a, up = loaded.arrays, self._backend.upload
+        role = up(np.ascontiguousarray(roles).reshape(-1))
+        tables = (a["info"], a["surface_object"], a["head"], role, roles.shape[1])
+        cells = self._backend.buffer((out.size,), np.uint8)
+        guides.gather_guides(vis, *tables, len(out), *size, GUIDE_SIDE, cells)
+        out.reshape(-1)[:] = cells if self._backend.on_host else cells.to_numpy()
+
+    def objects_seen(self, loaded: Loaded, layer: Layer, objects: NDArray[np.int32]) -> None:
+        """The same as :meth:`object_ids` of what was not shaded."""
+        from .kernels import plain  # only where it is asked for
+
+        a, out = loaded.arrays, objects.reshape(-1)
+        plain.ids_seen(layer.vis, a["info"], a["surface_object"], out, len(out))

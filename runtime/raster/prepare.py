@@ -27,6 +27,7 @@ FLAT = 1  # surface flag: the triangle's three normals are one
 MOVES = 2  # surface flag: skinned
 CLOSED = 4  # surface flag: its back is never seen
 CASTING = 3  # level of bodies that throws shadows
+_AHEAD = 0.35  # of a head's normal in the bind pose, along X: what counts as its front
 SHIFT = 8  # flags sit above the material in info
 
 
@@ -45,7 +46,8 @@ class Prepared:
     moving_surface: index of the first skinned surface; static_faces: number of static triangles
     set_casters, casters: int32, triangles that throw shadows, static and skinned; area: float32 [K], square
     metres a skinned vertex stands for; density: surface of the set in the air; stage: corners of what
-    stands in it; levels: heights of its floors; detail: the levels of bodies
+    stands in it; levels: heights of its floors; detail: the levels of bodies; head: uint8 [F], 1 for a
+    triangle of a head, 2 for one of its front
     """
 
     vertices: NDArray[np.float32]
@@ -69,6 +71,7 @@ class Prepared:
     stage: tuple[NDArray[np.float64], NDArray[np.float64]]
     levels: tuple[float, ...]
     detail: Levels
+    head: NDArray[np.uint8]
 
 
 def check(scene: RenderScene) -> None:
@@ -245,7 +248,18 @@ def prepare(scene: RenderScene, style: Style) -> Prepared:
         stage=stage_bounds(static, set_casters),
         levels=scene.levels,
         detail=detail,
+        head=np.concatenate([np.zeros(len(order), np.uint8), _heads(scene, skinned)]),
     )
+
+
+def _heads(scene: RenderScene, skinned: Mesh) -> NDArray[np.uint8]:
+    """Which of the skinned triangles are of heads, and which of these look ahead, uint8 [F]."""
+    if not scene.heads or not len(skinned.faces):
+        return np.zeros(len(skinned.faces), np.uint8)
+    main = np.take_along_axis(scene.joints, scene.weights.argmax(axis=1)[:, None], axis=1)[:, 0]
+    of_head = np.isin(main, scene.heads)[skinned.faces[:, 0]]
+    ahead = skinned.normals[skinned.faces].mean(axis=1)[:, 0] > _AHEAD
+    return (of_head * (1 + ahead)).astype(np.uint8)
 
 
 def _fitting(scene: RenderScene) -> NDArray[np.int32]:

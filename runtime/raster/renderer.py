@@ -25,8 +25,8 @@ from .moments import Moments
 from .optics import Lens, lens_of
 from .passes import Passes
 from .pool import Pool
-from .types import Frames, RenderScene, Style, Views
-from .views import check_levels, check_moments, left_out, pack_views, with_other_levels
+from .types import GUIDE_SIDE, GUIDES, Frames, RenderScene, Style, Views
+from .views import check_levels, check_moments, check_roles, left_out, pack_views, with_other_levels
 from .visibility import Visibility
 
 
@@ -73,11 +73,16 @@ class Renderer:
         size: tuple[int, int],
         ids: bool = False,
         depth: bool = False,
+        roles: NDArray[np.uint8] | None = None,
+        pictures: bool = True,
     ) -> Frames:
         """Draw every view.
 
         palettes: float32 [M, P, 3, 4], world-from-bind matrices of each moment; size: (width, height)
-        returns colours uint8 [N, H, W, 3], and if asked for object ids int32 and depths float32 [N, H, W]
+        roles: uint8 [N, objects], NO_ROLE, SUBJECT or OTHERS of each object in each view, for guides
+        pictures: whether to shade; colours [N, 0, 0, 3] are quick where ids, depths or guides are enough
+        returns colours uint8 [N, H, W, 3], and if asked for object ids int32 and depths float32 [N, H, W],
+            and guides
         """
         content = self._loaded
         if content is None:
@@ -86,9 +91,13 @@ class Renderer:
         view, moment, hidden = self._checked(content, palettes, views, (width, height))
         count = len(moment)
         lens = lens_of(views.camera, count, width)
-        color = self._pool.bytes((count, height, width, 3))
+        color = self._pool.bytes((count, height if pictures else 0, width if pictures else 0, 3))
         objects = np.empty((count, height, width), np.int32) if ids else None
         far = np.empty((count, height, width), np.float32) if depth else None
+        guides = None
+        if roles is not None:
+            check_roles(roles, count, int(content.scene.surface_object.max(initial=-1)) + 1)
+            guides = np.empty((count, GUIDE_SIDE, GUIDE_SIDE, len(GUIDES)), np.uint8)
         chunk = self._chunk(content, hidden, (width, height))
         several = len(np.unique(moment))
         # moments that many views share are moved once for all chunks, if there is room for all of them
@@ -115,6 +124,10 @@ class Renderer:
                 )
                 if far is not None:
                     far[part] = self._depths(far[part].shape)
+                if guides is not None and roles is not None:
+                    self._passes.guides(
+                        content, self._buffers["vis"], roles[part], (width, height), guides[part]
+                    )
             except (MemoryError, RuntimeError) as error:
                 if part.stop - begin == 1 or not out_of_memory(error):
                     raise
@@ -125,7 +138,7 @@ class Renderer:
                 moved, every = slice(0), False
                 continue
             begin = part.stop
-        return Frames(color, objects, far)
+        return Frames(color, objects, far, guides)
 
     def levels(self, palettes: NDArray[np.float32], views: Views, size: tuple[int, int]) -> NDArray[np.int32]:
         """The level of detail that each view takes of each detailed body, int32 [N, B]; finer is less.
@@ -201,9 +214,14 @@ class Renderer:
         layer = passes.layer("", views, size)
         view_, moment_, hidden_ = up(view), up(moment), up(hidden)
         empty = np.full(views, -1, np.int32)
-        if self.serial and self._plain is None and size[0] % passes.run == 0:
+        shaded = color.size > 0
+        if shaded and self.serial and self._plain is None and size[0] % passes.run == 0:
             empty = self._empty.drawn_for(content, moments, glazing, view, hidden, size)
         self._visibility.fill(view_, moment_, hidden_, layer.vis, size, empty, self.serial)
+        if not shaded:
+            if objects is not None:
+                passes.objects_seen(content, layer, objects)
+            return
         if self._plain is not None:
             moved = (moments.position, moments.normal)
             self._plain.draw(view_, moment_, moved, layer.vis, size, color, objects)

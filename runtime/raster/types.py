@@ -19,6 +19,14 @@ from ..world import Light
 LOOK_VERSION: int = 18
 #: In ``fitting``: a person, or a thing that is carried about.
 LOOSE = -2
+#: What guides tell of each cell of a picture: shares of the subject, of its head, of the front of that, of
+#: other people and of nothing at all, 0..255; and how near what is seen is, 255 at NEAREST metres and 1 at
+#: FAR on a scale of logarithms, 0 for nothing.
+GUIDES = ("subject", "head", "face", "others", "nothing", "nearness")
+GUIDE_SIDE = 32  # cells along a picture
+NEAREST, FAR = 0.25, 64.0  # metres
+#: Roles of objects in a view.
+NO_ROLE, SUBJECT, OTHERS = 0, 1, 2
 #: In ``static_wall``: a face seen from its front only, such as a ceiling.
 ONE_SIDED = -2
 
@@ -66,6 +74,7 @@ class RenderScene:
         may be left out of a view;  what moves in the set itself
         (a door's leaf) is drawn like the set: the wild wall it is in, or -1. None: all are loose
     levels: heights of its floors, rising; on them people leave contact shadows
+    heads: palette indices of the joints of heads; in the bind pose their faces look along X
     """
 
     static: Mesh
@@ -79,6 +88,7 @@ class RenderScene:
     light: Light
     fitting: NDArray[np.int32] | None = None
     levels: tuple[float, ...] = (0.0,)
+    heads: tuple[int, ...] = ()
 
 
 def people_of(scene: RenderScene) -> int:
@@ -122,8 +132,10 @@ class Views:
 @dataclass(frozen=True, eq=False)
 class Frames:
     """color: uint8 [N, H, W, 3] sRGB; ids: int32 [N, H, W] object id or -1, None unless asked for
-    depth: float32 [N, H, W], metres along the optical axis, inf where nothing is; None unless asked for"""
+    depth: float32 [N, H, W], metres along the optical axis, inf where nothing is; None unless asked for
+    guides: uint8 [N, GUIDE_SIDE, GUIDE_SIDE, len(GUIDES)]; None unless asked for"""
 
     color: NDArray[np.uint8]
     ids: NDArray[np.int32] | None
     depth: NDArray[np.float32] | None = None
+    guides: NDArray[np.uint8] | None = None

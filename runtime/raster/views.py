@@ -44,6 +44,14 @@ def check_levels(levels: NDArray[np.int32], count: int, detail: Levels) -> NDArr
     return levels
 
 
+def check_roles(roles: NDArray[np.uint8], count: int, objects: int) -> None:
+    """Raises ValueError for roles that do not name all objects of every view."""
+    if roles.ndim != 2 or len(roles) != count or roles.shape[1] < objects or roles.dtype != np.uint8:
+        raise ValueError(
+            f"roles: expected uint8 [{count}, {objects} or more], got {roles.dtype} {roles.shape}"
+        )
+
+
 def with_other_levels(
     hidden: NDArray[np.int32], detail: Levels, chosen: NDArray[np.int32], walls: int
 ) -> NDArray[np.int32]:

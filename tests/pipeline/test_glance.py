@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from vdsl.pipeline import cache as cache_module
 from vdsl.pipeline import glance
 from vdsl.pipeline.compile import Result, Workshop, compile_file
+from vdsl.pipeline.filming import Seen
 from vdsl.pipeline.glance import GLANCED, Scored, second_looks
 from vdsl.pipeline.judging import GeometryJudge, Judge
 from vdsl.pipeline.options import Options
@@ -35,17 +36,19 @@ class Rough(GeometryJudge):
     def __init__(self) -> None:
         self.seen: list[tuple[int, ...]] = []
 
-    def scores(
-        self, cameras: tuple[CameraProposal, ...], frames: NDArray[np.uint8] | None
-    ) -> NDArray[np.float64]:
-        assert frames is not None
-        self.seen.append(frames.shape[:2])
+    def scores(self, cameras: tuple[CameraProposal, ...], seen: Seen | None) -> NDArray[np.float64]:
+        assert seen is not None
+        assert seen.guides is not None
+        assert seen.guides.maps.shape[:2] == seen.frames.shape[:2]
+        self.seen.append(seen.frames.shape[:2])
         return super().scores(cameras, None)
 
     def glance(
-        self, cameras: tuple[CameraProposal, ...], frames: NDArray[np.uint8], at: Sequence[int]
+        self, cameras: tuple[CameraProposal, ...], seen: Seen, at: Sequence[int]
     ) -> NDArray[np.float64]:
-        self.seen.append(frames.shape[:2])
+        assert seen.guides is not None
+        assert seen.guides.maps.shape[:2] == (len(cameras), len(at))
+        self.seen.append(seen.frames.shape[:2])
         off = np.sin(np.array([c.index for c in cameras]) * 7.0)
         return np.asarray(super().scores(cameras, None) + 0.01 * off)
 

@@ -21,7 +21,7 @@ from vdsl.lang.ir import ALL_ANGLES, FURTHER_MOVEMENTS, MOVEMENTS, SIZES
 from vdsl.library import Catalog
 from vdsl.pipeline.acts import stage_acts
 from vdsl.pipeline.casting import Scene, Troupe, split_of_story
-from vdsl.pipeline.clips import Clip, clips_of, moves
+from vdsl.pipeline.clips import BAR, Clip, clips_of, moves
 from vdsl.pipeline.dataset import _Filmed, generate
 from vdsl.pipeline.designer import judged, picks
 from vdsl.pipeline.hints import frame_hints_of, hints_of
@@ -179,20 +179,37 @@ def test_a_track_measured_anew_measures_the_same(scenes: list[Scene]) -> None:
 
 def test_negatives_are_truly_worse_and_labels_are_what_the_track_shows(scenes: list[Scene]) -> None:
     found = [clip for n, scene in enumerate(scenes) for clip in clips_of(scene, np.random.default_rng(n))]
-    good = [clip for clip in found if clip.kind == "designer"]
-    bad = [clip for clip in found if clip.kind != "designer"]
+    good, bad = found[::2], found[1::2]
+    assert all(clip.kind == "designer" for clip in good)
     assert len(good) == len(bad) >= 5
-    for clip in good:
+    for clip, other in zip(good, bad, strict=True):
+        assert judged([clip.camera])[0] == pytest.approx(clip.opinion)
+        assert clip.opinion >= BAR
+        assert 0 <= clip.grade <= 1
         movement, *others = classes(*_asked(clip))
         seen = movement != "follow" or moves(clip.camera.track)
         assert clip.words == (movement if seen else None, *others)
-    for clip, other in zip(good, _partners(found), strict=True):
-        worse = judged([other.camera])[0] < judged([clip.camera])[0]
-        assert worse or other.words != clip.words
+        assert judged([other.camera])[0] == pytest.approx(other.opinion)
+        if other.kind == "passed-over":
+            assert other.opinion < BAR
+            continue
+        assert other.opinion < BAR or other.words != clip.words
         assert other.camera.measures != clip.camera.measures
         assert all(word in (None, own) for word, own in zip(other.words, clip.words, strict=True))
-    assert np.mean([judged([clip.camera])[0] < 0 for clip in bad]) > 0.5
+    assert np.mean([clip.opinion < 0 for clip in bad]) > 0.5
     assert all(0.1 <= clip.strength <= 1 for clip in bad)
+
+
+def test_half_of_the_negatives_are_proposals_as_they_come(scenes: list[Scene]) -> None:
+    for scene in scenes:
+        for seed in range(3):
+            for clip in clips_of(scene, np.random.default_rng(seed)):
+                own = [c for grid in scene.grids for c in grid.cameras if c is clip.camera]
+                assert len(own) == (clip.kind in ("designer", "passed-over")), clip.kind
+    kinds = [c.kind for s in scenes for n in range(40) for c in clips_of(s, np.random.default_rng(n))]
+    assert 0.2 < kinds.count("passed-over") / kinds.count("designer") < 0.6
+    some = next(c for s in scenes for n in range(9) for c in clips_of(s, np.random.default_rng(n))[1::2])
+    assert some.opinion < BAR
 
 
 def test_a_camera_that_hardly_moves_is_told() -> None:
@@ -218,14 +235,10 @@ def _asked(clip: Clip) -> tuple[str, str, str]:
     return clip.camera.movement, clip.camera.scale, clip.camera.angle
 
 
-def _partners(found: list[Clip]) -> list[Clip]:
-    """Of every good one, in order, the one spoilt of it: each shot's good ones come before its bad ones."""
-    return [clip for clip in found if clip.kind != "designer"]
-
-
 def test_what_does_not_get_worse_is_no_negative(scenes: list[Scene], monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("vdsl.pipeline.clips.perturbed", lambda track, strength, rng: track)
     monkeypatch.setattr("vdsl.pipeline.clips.mistyped", lambda track, rng: track)
+    monkeypatch.setattr("vdsl.pipeline.clips._PASSED_OVER", 0.0)
     assert [clip for scene in scenes for clip in clips_of(scene, np.random.default_rng(0))] == []
 
 
@@ -248,6 +261,12 @@ def test_a_training_set_is_half_good_and_goes_on_where_it_stopped(
     assert {"right_eyes", "feet", "pitch", "size"} <= set(names)
     assert marks.shape[:2] == (at_once, 8)
     assert np.isfinite(marks).mean() > 0.95
+    assert all(0 <= label.about["grade"] <= 1 for label in good)
+    guides = data.guides(np.arange(at_once))
+    assert guides is not None
+    assert guides.maps.shape == (at_once, 8, 32, 32, 7)
+    shown = guides.maps[[la.professional for la in data.labels], ..., 0].reshape(len(good), -1).max(1)
+    assert (shown > 200).mean() > 0.8  # whom a good clip is about is seen in it
     frames = data.clip(0, range(8), 64)
     assert frames.shape == (8, 64, 64, 3)
     assert frames.std() > 10

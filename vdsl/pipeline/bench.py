@@ -19,12 +19,14 @@ from time import perf_counter
 import numpy as np
 from numpy.typing import NDArray
 
+from ranker.guides import joined
 from runtime.video import write_video
 
 from ..propose.story import propose
 from ..propose.types import CameraProposal, ProposalGrid
 from .compile import Act, stage_acts
-from .filming import SEGMENTS, Camerawork
+from .filming import SEGMENTS, Camerawork, Seen
+from .guides import objects_of
 from .judging import DiscriminatorJudge
 from .script import load_storyboard
 
@@ -64,11 +66,11 @@ def measure(
     proposals, grids = _proposals(acts)
     camerawork = Camerawork(device)
     said("frames for ranking")
-    rank_frames, frames = _rank_frames(acts, grids, camerawork)
+    rank_frames, seen = _rank_frames(acts, grids, camerawork)
     said("frames at 720p")
     render, encoded = _takes(acts, grids, camerawork)
     said("the discriminator")
-    shots = _ranked(tuple(c for g in grids for c in g.cameras[:_JUDGED]), frames, device)
+    shots = _ranked(tuple(c for g in grids for c in g.cameras[:_JUDGED]), seen, device)
     seconds, peak = None, None
     if whole:
         said("a whole compilation")
@@ -99,20 +101,21 @@ def _proposals(acts: list[Act]) -> tuple[float, list[ProposalGrid]]:
     return _rate(work), grids
 
 
-def _rank_frames(
-    acts: list[Act], grids: list[ProposalGrid], camerawork: Camerawork
-) -> tuple[float, NDArray[np.uint8]]:
+def _rank_frames(acts: list[Act], grids: list[ProposalGrid], camerawork: Camerawork) -> tuple[float, Seen]:
     """A line at a time, as in a compilation; loading the scene is part of it."""
-    drawn: list[NDArray[np.uint8]] = []
+    drawn: list[Seen] = []
 
     def work() -> int:
         drawn.clear()
         for act, grid in zip(acts, grids, strict=True):
-            cameras = grid.cameras[:_JUDGED]
-            drawn.append(camerawork.judge_frames(act.staged, "board", grid.story, cameras))
-        return SEGMENTS * sum(len(d) for d in drawn)
+            cameras, shot = grid.cameras[:_JUDGED], act.line.shots[0]
+            about = [objects_of(shot, grid, act.filming, act.staged)] * len(cameras)
+            drawn.append(camerawork.judge_frames(act.staged, "board", grid.story, cameras, about=about))
+        return SEGMENTS * sum(len(d.frames) for d in drawn)
 
-    return _rate(work), np.concatenate(drawn)
+    rate = _rate(work)
+    guides = joined([d.guides for d in drawn if d.guides is not None])
+    return rate, Seen(np.concatenate([d.frames for d in drawn]), guides)
 
 
 def _takes(acts: list[Act], grids: list[ProposalGrid], camerawork: Camerawork) -> tuple[float, float]:
@@ -132,7 +135,7 @@ def _takes(acts: list[Act], grids: list[ProposalGrid], camerawork: Camerawork) -
     return _rate(render), _rate(encode)
 
 
-def _ranked(cameras: tuple[CameraProposal, ...], frames: NDArray[np.uint8], device: str) -> float | None:
+def _ranked(cameras: tuple[CameraProposal, ...], seen: Seen, device: str) -> float | None:
     from ranker import RankerError
 
     try:
@@ -140,9 +143,11 @@ def _ranked(cameras: tuple[CameraProposal, ...], frames: NDArray[np.uint8], devi
     except RankerError:
         return None
 
+    some = Seen(seen.frames[:32], None if seen.guides is None else seen.guides[:32])
+
     def work() -> int:
-        judge.scores(cameras[:32], frames[:32])
-        return len(frames[:32])
+        judge.scores(cameras[:32], some)
+        return len(some.frames)
 
     return _rate(work)
 

@@ -1,7 +1,8 @@
-"""Which takes of a line become training clips: the designer's picks, as many spoilt ones, and their labels.
+"""Which takes of a line become training clips: the designer's picks, as many that are not, and their labels.
 
-Assumes proposed shots of one performed line. Guarantees that a spoilt take is truly worse: its track is
-measured again, and it stays only if the geometry says so or it no longer shows what its line asked for; and
+Assumes proposed shots of one performed line. Guarantees that what is called bad is nothing the designer would
+pick: proposals that were passed over have a fault or too little appeal, and the track of a spoilt take is
+measured again, and stays only if the same is true of it or it no longer shows what its line asked for; and
 that a label of movement, size or angle is what the track itself reads as.
 """
 
@@ -18,18 +19,24 @@ from ..propose.promise import achieved
 from ..propose.subjects import subject_of
 from ..propose.types import CameraProposal, ProposalGrid
 from .casting import Scene
-from .designer import appeal, judged, picks
+from .designer import faults, judged, picks
 from .filming import segment_frames
+from .guides import objects_of
 from .hints import frame_hints_of
 from .labels import classes
 from .perturb import mistyped, perturbed
 
 _PICKS = 4  # of each shot
-#: Share of the negatives that are of no type; the others are perturbed.
-_MISTYPED = 1 / 6
+#: Appeal below which nothing is picked, as good as the rest may be.
+BAR = 0.7
+#: Share of the negatives that are proposals passed over; of the others, of those that are of no type. The
+#: rest is perturbed.
+_PASSED_OVER, _MISTYPED = 0.5, 0.2
 _MISTYPED_STRENGTH = 0.5
+#: Strength of a proposal that was passed over, by the criteria in which it has a fault.
+_A_FAULT = 0.25
 #: Strengths tried for a negative, each at least that of the one before: the first that is worse counts.
-_TRIES = (0.0, 0.0, 0.4, 1.0)
+_TRIES = (0.0, 0.0, 0.0, 0.3, 0.6, 1.0)
 #: Share of its appeal that a take has to lose where it gets no fault of the designer's.
 _LOST = 0.08
 #: Movement that is seen: a share of the distance, radians, log of the focal length.
@@ -40,27 +47,59 @@ Words = tuple[str | None, str | None, str | None]
 
 @dataclass(frozen=True, eq=False)
 class Clip:
-    """A take to be drawn. kind: ``designer``, ``perturbed`` or ``mistyped``; words: movement, size and angle
-    as classes, None for what it does not show clearly; frames: what is known of each judged frame in numbers
+    """A take to be drawn.
+
+    kind: ``designer``, ``passed-over``, ``perturbed`` or ``mistyped``; opinion: the designer's, as
+    :func:`vdsl.pipeline.designer.judged`; words: movement, size and angle as classes, None for what it does
+    not show clearly; frames: what is known of each judged frame in numbers; objects: ids of what it is about
+    doubtful: whether it is bad for reasons that no picture shows, or hardly bad; bare: whether its guides are
+    enough
     """
 
     camera: CameraProposal
     kind: str
     strength: float
+    opinion: float
     words: Words
     frames: dict[str, list[float]] = field(default_factory=dict)
+    objects: tuple[int, ...] = ()
+    doubtful: bool = False
+    bare: bool = False
+
+    @property
+    def grade(self) -> float:
+        """How far a good one is above the bar, 0..1."""
+        return min(max((self.opinion - BAR) / (1.0 - BAR), 0.0), 1.0)
 
 
 def clips_of(scene: Scene, rng: np.random.Generator) -> list[Clip]:
-    """The designer's picks of a scene's shots, and as many spoilt ones."""
+    """The designer's picks of a scene's shots, and as many takes that are not; to learn from, all other
+    proposals as well, bare."""
     out: list[Clip] = []
     for shot, grid in zip(scene.shots, scene.grids, strict=True):
-        kept = [grid.cameras[i] for i in picks(grid.cameras, _PICKS)]
-        bad = [_spoilt(scene, shot, grid, camera, rng) for camera in kept]
-        pairs = [(good, clip) for good, clip in zip(kept, bad, strict=True) if clip is not None]
-        made = [Clip(good, "designer", 0.0, _read(scene, shot, grid, good)) for good, _ in pairs]
-        made += [clip for _, clip in pairs]
-        out += [replace(clip, frames=_frames(scene, shot, grid, clip.camera)) for clip in made]
+        opinion = judged(grid.cameras)
+        kept = [i for i in picks(grid.cameras, _PICKS) if opinion[i] >= BAR]
+        left = [i for i in rng.permutation(len(grid.cameras)) if opinion[i] < BAR * (1 - _LOST)]
+        made: list[Clip] = []
+        for i in kept:
+            good = grid.cameras[i]
+            if left and rng.random() < _PASSED_OVER:
+                bad: Clip | None = _passed_over(
+                    scene, shot, grid, grid.cameras[left[0]], float(opinion[left[0]])
+                )
+                left = left[1:]
+            else:
+                bad = _spoilt(scene, shot, grid, good, float(opinion[i]), rng)
+            if bad is not None:
+                words = _read(scene, shot, grid, good)
+                made += [Clip(good, "designer", 0.0, float(opinion[i]), words), bad]
+        shown = {id(clip.camera) for clip in made}
+        for camera, thought in zip(grid.cameras, opinion, strict=True):
+            if id(camera) not in shown and scene.split == "train":
+                made.append(_bare(scene, shot, grid, camera, float(thought)))
+        objects = objects_of(shot, grid, scene.filming, scene.staged)
+        for clip in made:
+            out.append(replace(clip, frames=_frames(scene, shot, grid, clip.camera), objects=objects))
     return out
 
 
@@ -69,8 +108,36 @@ def _frames(scene: Scene, shot: Shot, grid: ProposalGrid, camera: CameraProposal
     return frame_hints_of(camera, subject_of(shot, story, scene.filming), segment_frames(story.frames))
 
 
+def _passed_over(
+    scene: Scene, shot: Shot, grid: ProposalGrid, camera: CameraProposal, opinion: float
+) -> Clip:
+    """A proposal that the designer left."""
+    wrong = sum(bool(found) for found in faults(camera.measures).values())
+    strength = min(max(wrong, 1) * _A_FAULT, 1.0)
+    words = _read(scene, shot, grid, camera)
+    return Clip(camera, "passed-over", strength, opinion, words, doubtful=not _seen(camera, opinion))
+
+
+def _bare(scene: Scene, shot: Shot, grid: ProposalGrid, camera: CameraProposal, opinion: float) -> Clip:
+    """A proposal that is not drawn: good or bad as the designer says, picked or not."""
+    if opinion < BAR:
+        clip = _passed_over(scene, shot, grid, camera, opinion)
+        return replace(clip, bare=True, doubtful=clip.doubtful or opinion >= BAR * (1 - _LOST))
+    return Clip(camera, "designer", 0.0, opinion, _read(scene, shot, grid, camera), bare=True)
+
+
+def _seen(camera: CameraProposal, opinion: float) -> bool:
+    """Whether one can see what is wrong with a take: it has little appeal, or a fault that shows."""
+    return opinion >= 0 or any(bool(found) for found in faults(camera.measures, seen=True).values())
+
+
 def _spoilt(
-    scene: Scene, shot: Shot, grid: ProposalGrid, good: CameraProposal, rng: np.random.Generator
+    scene: Scene,
+    shot: Shot,
+    grid: ProposalGrid,
+    good: CameraProposal,
+    appeal: float,
+    rng: np.random.Generator,
 ) -> Clip | None:
     """A worse take made of a good one; None where nothing that was tried made it worse."""
     if rng.random() < _MISTYPED:
@@ -82,13 +149,14 @@ def _spoilt(
         tracks = [perturbed(good.track, strength, rng) for strength in strengths]
     tried = [replace(good, track=track) for track in tracks]
     tried = measured_anew(shot, grid.story[good.story], scene.filming, tried)
-    opinion = judged(tried)
-    least = (1.0 - _LOST) * float(appeal({k: np.asarray(v) for k, v in good.measures.items()}))
-    for camera, strength, thought in zip(tried, strengths, opinion, strict=True):
+    least = min(BAR, (1.0 - _LOST) * appeal)
+    for camera, strength, thought in zip(tried, strengths, judged(tried), strict=True):
         words = _read(scene, shot, grid, camera)
         lost = [asked and not shown for asked, shown in zip(_asked(good), words, strict=True)]
         if thought < least or any(lost):
-            return Clip(camera, kind, strength, (None, None, None) if kind == "mistyped" else words)
+            known = (None, None, None) if kind == "mistyped" else words
+            doubtful = not any(lost) and not _seen(camera, thought)
+            return Clip(camera, kind, strength, float(thought), known, doubtful=doubtful)
     return None
 
 

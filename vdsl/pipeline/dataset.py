@@ -1,8 +1,8 @@
 """The discriminator's training set: random stories, filmed well and filmed badly.
 
 Positives are what the virtual designer picks of a shot's proposals (:mod:`vdsl.pipeline.designer`);
-negatives are picks shaken about at graded strengths, and picks made to show no type, as many as there are
-positives and measured to be worse (:mod:`vdsl.pipeline.clips`). Every draw is keyed by the seed and the
+negatives are proposals passed over, picks shaken about at graded strengths, and picks made to show no type,
+as many as there are positives (:mod:`vdsl.pipeline.clips`). Every draw is keyed by the seed and the
 story's number, whole stories go to disk in their order, and the set itself says which were: so it is the same
 whether or not its making was stopped, and however many processes make it.
 """
@@ -11,7 +11,9 @@ from __future__ import annotations
 
 import multiprocessing
 import os
+import pickle
 import signal
+import tempfile
 from collections import deque
 from collections.abc import Callable, Iterator
 from concurrent.futures import Future, ProcessPoolExecutor
@@ -28,19 +30,21 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ranker.data import ShardWriter
+from ranker.guides import joined
 from runtime.raster.types import LOOK_VERSION
 
 from ..propose.types import ProposalGrid, StoryProposal
 from .casting import Scene, Troupe
 from .clips import clips_of
-from .filming import SEGMENTS, Camerawork
+from .filming import SEGMENTS, Camerawork, Seen
 from .hints import hints_of
 from .labels import WORDS
 from .progress import Progress, Silence
 
 #: Raised when other takes or labels come of the same seed.
-_RECIPE = 4
+_RECIPE = 5
 _PROPOSALS = 16
+_DRAWN_AT_ONCE = 64
 _SHARD = 64
 #: Processes at most, and stories that each has waiting: a story's pictures take up to 80 MB.
 _PROCESSES, _WAITING = 16, 2
@@ -48,7 +52,8 @@ _PROCESSES, _WAITING = 16, 2
 
 @dataclass(frozen=True, eq=False)
 class _Filmed:
-    """The clips of a scene. frames: uint8 [N, T, S, S, 3]; labels: the rest that ``ShardWriter.add`` takes"""
+    """The clips of a scene. frames: uint8 [N, T, S, S, 3] of the first N; labels: of all of them, the rest
+    that ``ShardWriter.add`` takes"""
 
     frames: NDArray[np.uint8]
     labels: list[tuple[Any, ...]]
@@ -81,12 +86,12 @@ def generate(
         watcher.begin("clips", max(0, clips - begun), "clips")
         if begun >= clips:
             return begun
-        for story in _stories(first, seed, device, size, processes or min(_cores(), _PROCESSES)):
+        for story in _stories(first, seed, device, size, processes or min(_cores(), _PROCESSES), folder):
             for scene in story:
-                for pictures, label in zip(scene.frames, scene.labels, strict=True):
-                    writer.add(pictures, *label)
+                for k, label in enumerate(scene.labels):
+                    writer.add(scene.frames[k] if k < len(scene.frames) else None, *label)
             now = perf_counter()
-            watcher.advance("clips", sum(len(scene.labels) for scene in story), now - last)
+            watcher.advance("clips", sum(len(scene.frames) for scene in story), now - last)
             last = now
             if writer.pending >= _SHARD or len(writer) + writer.pending >= clips:
                 writer.flush()
@@ -99,8 +104,14 @@ def _cores() -> int:
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
-def _stories(first: int, seed: int, device: str, size: int, processes: int) -> Iterator[list[_Filmed]]:
-    """The filmed scenes of all stories from ``first`` on, story by story in their order."""
+def _stories(
+    first: int, seed: int, device: str, size: int, processes: int, folder: Path
+) -> Iterator[list[_Filmed]]:
+    """The filmed scenes of all stories from ``first`` on, story by story in their order.
+
+    folder: where processes leave for a moment what they filmed. Through a pipe it would go in pieces, and who
+    waits for the rest of what a terminated process began to send waits for ever.
+    """
     if processes == 1:
         film = _maker(seed, device, size)
         yield from map(film, count(first))
@@ -110,13 +121,15 @@ def _stories(first: int, seed: int, device: str, size: int, processes: int) -> I
     places: Queue[int] = context.Queue()
     for place in range(processes):
         places.put(place)
-    pool = ProcessPoolExecutor(processes, context, _settle, (places, seed, device, size))
-    waiting: deque[Future[list[_Filmed]]] = deque()
+    waiting: deque[Future[Path]] = deque()
+    between = tempfile.TemporaryDirectory(prefix=".filmed-", dir=folder)
+    about = (places, seed, device, size, Path(between.name))
+    pool = ProcessPoolExecutor(processes, context, _settle, about)
     try:
         for number in count(first):
             waiting.append(pool.submit(_film_here, number))
             if len(waiting) >= _WAITING * processes:
-                yield waiting.popleft().result()
+                yield _taken(waiting.popleft().result())
     except BrokenProcessPool as error:
         raise OSError(
             "a process that films stories was ended from outside, perhaps for want of memory; "
@@ -126,23 +139,40 @@ def _stories(first: int, seed: int, device: str, size: int, processes: int) -> I
         for process in set(multiprocessing.active_children()) - others:
             process.terminate()
         pool.shutdown(cancel_futures=True)
+        between.cleanup()
 
 
-_here: list[Callable[[int], list[_Filmed]]] = []
+_here: list[Callable[[int], Path]] = []
 
 
-def _settle(places: Queue[int], seed: int, device: str, size: int) -> None:
+def _settle(places: Queue[int], seed: int, device: str, size: int, between: Path) -> None:
     """Make this process one that films stories, on a core of its own; whoever began it says when to stop."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     place = places.get()
     with suppress(AttributeError, OSError):  # where processes cannot be kept to cores, they share them
         cores = sorted(os.sched_getaffinity(0))
         os.sched_setaffinity(0, {cores[place % len(cores)]})
-    _here.append(_maker(seed, device, size))
+    film = _maker(seed, device, size)
+
+    def left(number: int) -> Path:
+        path = between / str(number)
+        with path.open("wb") as file:
+            pickle.dump(film(number), file, pickle.HIGHEST_PROTOCOL)
+        return path
+
+    _here.append(left)
 
 
-def _film_here(number: int) -> list[_Filmed]:
+def _film_here(number: int) -> Path:
     return _here[0](number)
+
+
+def _taken(path: Path) -> list[_Filmed]:
+    """What a process of ours left."""
+    with path.open("rb") as file:
+        found: list[_Filmed] = pickle.load(file)
+    path.unlink()
+    return found
 
 
 def _maker(seed: int, device: str, size: int) -> Callable[[int], list[_Filmed]]:
@@ -157,14 +187,27 @@ def _maker(seed: int, device: str, size: int) -> Callable[[int], list[_Filmed]]:
 
 
 def _filmed(scene: Scene, seed: int, camerawork: Camerawork, size: int) -> _Filmed | None:
-    """All clips of a scene, drawn in one go: they share its moments."""
+    """All clips of a scene; those that are drawn at a time share its moments."""
     clips = clips_of(scene, np.random.default_rng((seed, scene.number, scene.shots[0].line)))
+    clips.sort(key=lambda clip: clip.bare)
     if not clips:
         return None
-    cameras, style = tuple(clip.camera for clip in clips), scene.shots[0].style
-    frames = camerawork.judge_frames(scene.staged, style, stories_of(scene.grids), cameras, (size, size))
+    count = sum(not clip.bare for clip in clips)
+    drawn: list[Seen] = []
+    for part, pictures in ((clips[:count], True), (clips[count:], False)):
+        for begin in range(0, len(part), _DRAWN_AT_ONCE):
+            some = part[begin : begin + _DRAWN_AT_ONCE]
+            cameras, objects = tuple(clip.camera for clip in some), [clip.objects for clip in some]
+            stories, style = stories_of(scene.grids), scene.shots[0].style
+            drawn.append(
+                camerawork.judge_frames(
+                    scene.staged, style, stories, cameras, (size, size), about=objects, pictures=pictures
+                )
+            )
+    frames = [seen.frames for seen in drawn if seen.frames.size]
+    guides = joined([seen.guides for seen in drawn if seen.guides is not None])
     labels = []
-    for clip in clips:
+    for k, clip in enumerate(clips):
         c = clip.camera
         about = {
             "story": scene.number,
@@ -174,10 +217,14 @@ def _filmed(scene: Scene, seed: int, camerawork: Camerawork, size: int) -> _Film
             "cast": list(scene.cast),
             "hints": hints_of(c),
             "frames": clip.frames,
+            "opinion": round(clip.opinion, 4),
+            **({"grade": round(clip.grade, 4)} if clip.kind == "designer" else {}),
+            **({"doubtful": True} if clip.doubtful else {}),
         }
         group, good = scene.place.partition(".")[0], clip.kind == "designer"
-        labels.append((good, *clip.words, group, clip.strength, scene.split, about))
-    return _Filmed(frames, labels)
+        labels.append((good, *clip.words, group, clip.strength, scene.split, about, guides[k : k + 1]))
+    empty = np.zeros((0, SEGMENTS, size, size, 3), np.uint8)
+    return _Filmed(np.concatenate(frames) if frames else empty, labels)
 
 
 def stories_of(grids: tuple[ProposalGrid, ...]) -> tuple[StoryProposal, ...]:

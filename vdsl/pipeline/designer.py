@@ -43,6 +43,9 @@ MOST = (
     ("steadiness", "jerk", 8.0),
     ("steadiness", "speed", 3.5),
 )
+#: Measures of which no picture tells: how near the walls around the camera are, and whether size and view are
+#: those that were asked for.
+UNSEEN = ("clearance", "size_error", "view")
 #: How much each criterion counts in the order of what has no fault; variety comes from :func:`picks`.
 COUNTS = {
     "visibility": 0.24,
@@ -57,14 +60,17 @@ CRITERIA = tuple(COUNTS)
 _LITTLE = 0.02  # the worst a criterion is taken for
 
 
-def faults(measures: Measures) -> dict[str, NDArray[np.bool_]]:
-    """By criterion, which of the takes [P] have a fault in it."""
+def faults(measures: Measures, seen: bool = False) -> dict[str, NDArray[np.bool_]]:
+    """By criterion, which of the takes [P] have a fault in it. seen: only those that a picture can show"""
     m = {k: np.asarray(v, float) for k, v in measures.items()}
     out = {name: np.zeros(np.shape(m["visibility"]), bool) for name in CRITERIA}
+    left = UNSEEN if seen else ()
     for criterion, name, least in LEAST:
-        out[criterion] = out[criterion] | (m[name] < least)
+        if name not in left:
+            out[criterion] = out[criterion] | (m[name] < least)
     for criterion, name, most in MOST:
-        out[criterion] = out[criterion] | (m[name] > most)
+        if name not in left:
+            out[criterion] = out[criterion] | (m[name] > most)
     return out
 
 

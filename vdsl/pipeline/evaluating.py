@@ -40,7 +40,9 @@ def evaluated(
     ranges = load_ranges(weights, model, card)
     ranker = Ranker(model, device if device in ("cpu", "cuda") else "auto", ranges)
     ranker.fits(held_set.frames)
-    test = np.array([i for i, label in enumerate(held_set.labels) if label.split == "test"], np.int64)
+    test = np.array(
+        [i for i, label in enumerate(held_set.labels) if label.split == "test" and not label.bare], np.int64
+    )
     if not len(test):
         raise RankerError(f"{data}: keeps no clips for testing; film one with `vdsc dataset`")
     if clips is not None:

@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ranker.guides import Guides
 from runtime.raster.renderer import Renderer
 from runtime.raster.types import STYLES, Camera, Frames, Views
 
 from ..cinema.track import CameraTrack, camera_axes
 from ..propose.types import CameraProposal, StoryProposal
 from ..stage.assemble import StagedScene, palettes
+from .guides import guides_of, roles_of
 from .shutter import between, camera_between, exposed_frames, moments_needed
 
 #: The discriminator looks at this many frames of this size (the paper's section 3.3).
@@ -35,6 +38,13 @@ def not_drawn(staged: StagedScene, camera: CameraProposal) -> NDArray[np.bool_]:
     return np.concatenate([camera.hidden_walls, people])
 
 
+class Seen(NamedTuple):
+    """What the judge sees of P proposals: frames uint8 [P, k, H, W, 3], and their guides if asked for."""
+
+    frames: NDArray[np.uint8]
+    guides: Guides | None
+
+
 class Camerawork:
     """Draws any proposal of the scene it was last shown. One renderer for each style that is asked for."""
 
@@ -51,13 +61,23 @@ class Camerawork:
         cameras: tuple[CameraProposal, ...],
         size: tuple[int, int] = JUDGE_SIZE,
         which: Sequence[int] = range(SEGMENTS),
-    ) -> NDArray[np.uint8]:
-        """Frames for ranking: uint8 [P, 8, H, W, 3] of P proposals; shared moments are skinned once.
+        about: Sequence[tuple[int, ...]] | None = None,
+        pictures: bool = True,
+    ) -> Seen:
+        """Frames for ranking of P proposals; shared moments are skinned once.
 
-        which: of the eight, those that are wanted
+        which: of the eight, those that are wanted; about: ids of what each camera is about, for guides;
+            pictures: whether to shade, or frames of 0 x 0 will do
         """
-        color = self._segments(staged, style, stories, cameras, size, which).color
-        return color.reshape(len(cameras), len(which), *color.shape[1:])
+        views, moments = self._segments(staged, stories, cameras, which)
+        roles = None
+        if about is not None:
+            roles = np.repeat(roles_of(staged, about), len(which), axis=0)
+        drawn = self._renderer(staged, style).render(moments, views, size, roles=roles, pictures=pictures)
+        frames = drawn.color.reshape(len(cameras), len(which), *drawn.color.shape[1:])
+        if drawn.guides is None:
+            return Seen(frames, None)
+        return Seen(frames, guides_of(drawn.guides, views.camera, len(cameras), which, SEGMENTS))
 
     def judge_ids(
         self,
@@ -68,21 +88,20 @@ class Camerawork:
         size: tuple[int, int],
     ) -> NDArray[np.int32]:
         """Object ids in the same frames: int32 [P, 8, H, W]."""
-        ids = self._segments(staged, style, stories, cameras, size, range(SEGMENTS), ids=True).ids
+        views, moments = self._segments(staged, stories, cameras, range(SEGMENTS))
+        ids = self._renderer(staged, style).render(moments, views, size, ids=True).ids
         assert ids is not None
         return ids.reshape(len(cameras), SEGMENTS, *ids.shape[1:])
 
     def _segments(
         self,
         staged: StagedScene,
-        style: str,
         stories: tuple[StoryProposal, ...],
         cameras: tuple[CameraProposal, ...],
-        size: tuple[int, int],
         which: Sequence[int],
-        ids: bool = False,
-    ) -> Frames:
-        """The middle frames of some of the segments of P proposals, one after the other."""
+    ) -> tuple[Views, NDArray[np.float32]]:
+        """Views and palettes of the middle frames of some of the segments of P proposals, one after the
+        other."""
         used = {c.story for c in cameras}
         at = {s.index: segment_frames(s.frames)[list(which)] for s in stories if s.index in used}
         first = {story: k * len(which) for k, story in enumerate(at)}
@@ -92,7 +111,7 @@ class Camerawork:
         tracks = [(c.track, at[c.story]) for c in cameras]
         hidden = np.repeat(np.stack([not_drawn(staged, c) for c in cameras]), len(which), axis=0)
         views = Views(_camera(tracks), moment.astype(np.int32), hidden)
-        return self._renderer(staged, style).render(moments, views, size, ids=ids)
+        return views, moments
 
     def take_frames(
         self,

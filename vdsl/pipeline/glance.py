@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from ..propose.types import CameraProposal, ProposalGrid
 from ..stage.assemble import StagedScene
 from .ahead import one_ahead
-from .filming import SEGMENTS, Camerawork
+from .filming import SEGMENTS, Camerawork, Seen
 from .judging import Judge
 from .progress import StageClock
 
@@ -40,11 +40,15 @@ def second_looks(count: int) -> int:
 
 @dataclass(frozen=True, eq=False)
 class Screening:
-    """Shows a judge some frames of some proposals. judge: asked for when there is something to judge"""
+    """Shows a judge some frames of some proposals.
+
+    objects: ids of what their cameras are about; judge: asked for when there is something to judge
+    """
 
     staged: StagedScene
     style: str
     grid: ProposalGrid
+    objects: tuple[int, ...]
     camerawork: Camerawork
     judge: Callable[[], Judge]
     clock: StageClock
@@ -56,22 +60,21 @@ class Screening:
         clock.begin("rank", len(frames) * len(which), "frames")
         parts, at_once = [], _DRAWN_AT_ONCE // len(frames)
 
-        def drawn(cameras: tuple[CameraProposal, ...]) -> NDArray[np.uint8]:
+        def drawn(cameras: tuple[CameraProposal, ...]) -> Seen:
             with clock.spent("draw", len(frames) * len(cameras)):
+                about = [self.objects] * len(cameras)
                 return self.camerawork.judge_frames(
-                    self.staged, self.style, self.grid.story, cameras, which=frames
+                    self.staged, self.style, self.grid.story, cameras, which=frames, about=about
                 )
 
         batches = (
             tuple(self.grid.cameras[i] for i in which[begin : begin + at_once])
             for begin in range(0, len(which), at_once)
         )
-        for cameras, pictures in one_ahead(drawn, batches):
+        for cameras, seen in one_ahead(drawn, batches):
             with clock.spent("rank", len(frames) * len(cameras)):
                 whole = len(frames) == SEGMENTS
-                parts.append(
-                    judge.scores(cameras, pictures) if whole else judge.glance(cameras, pictures, frames)
-                )
+                parts.append(judge.scores(cameras, seen) if whole else judge.glance(cameras, seen, frames))
         return np.concatenate(parts)
 
 

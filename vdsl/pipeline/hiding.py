@@ -8,7 +8,7 @@ shot, so that a stopped evaluation goes on; frames are not.
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from time import perf_counter
@@ -26,26 +26,32 @@ from ..lang.ir import Shot
 from ..propose.types import ProposalGrid
 from .ahead import one_ahead
 from .casting import TEST_EVERY, Scene, Troupe
-from .designer import picks
-from .filming import Camerawork
+from .designer import judged, picks
+from .filming import Camerawork, Seen
+from .guides import objects_of
 from .judging import prior
 from .progress import Progress, Silence
 
 _A_SHOT = 100  # proposals
+_CHOICES = 20  # of a shot
 _SEED = 1_000_003  # added to the data's seed: other stories than its own
 _AT_ONCE = 16
 
 
 @dataclass(frozen=True)
 class Scored:
-    """The proposals of a shot [P]: what the ranker says of each, and which the designer picked.
+    """The proposals of a shot [P]: what the ranker says of each, and what the designer does.
 
+    picked: the one the designer likes best; choices: all that may be picked, no two alike, best first;
+        opinions: of all, as :func:`vdsl.pipeline.designer.judged`
     margins: log odds from the pictures alone; priors: what compile adds for the geometry
     geometry: parts of the geometry score, by name
     """
 
     shot: str
     picked: int
+    choices: list[int]
+    opinions: list[float]
     margins: list[float]
     priors: list[float]
     geometry: dict[str, list[float]]
@@ -64,7 +70,7 @@ def hide(
     kept: a file of JSON lines, of these weights alone. Raises OSError.
     """
     watcher = progress or Silence()
-    head = {"seed": seed, "look": LOOK_VERSION}
+    head = {"seed": seed, "look": LOOK_VERSION, "schema": 2}
     done, numbers = _read(kept, head)
     count = sum(len(s.margins) for s in done)
     watcher.begin("proposals", max(0, proposals - count), "proposals")
@@ -78,11 +84,11 @@ def hide(
                 break
             if name in numbers:
                 continue
-            best = picks(grid.cameras, 1)
+            best = picks(grid.cameras, _CHOICES)
             if not best:
                 continue
             begun = perf_counter()
-            scored = _scored(name, scene, shot, grid, best[0], ranker, camerawork)
+            scored = _scored(name, scene, shot, grid, best, ranker, camerawork)
             file.write(json.dumps(asdict(scored)) + "\n")
             file.flush()
             done.append(scored)
@@ -92,21 +98,40 @@ def hide(
 
 
 def told(shots: list[Scored]) -> dict[str, Any]:
-    """``picks``, ``proposals``, how high the picks are among all, and agreement within each shot."""
+    """``picks``, ``proposals``, how high the picks are among all, and agreement within each shot.
+
+    As in the paper one in a hundred of all proposals is picked: those the designer likes best, whatever shot
+    they are of. ``best_of_each_shot``: the same of the one that is liked best in every shot, though it may be
+    no good one, by the ranker, and by the designer's own opinion, which no ranker can outdo.
+    """
     if not shots:
         return {"picks": 0, "proposals": 0, **hidden(np.zeros(0), np.zeros(0, bool)), "agreement": {}}
     margins = np.concatenate([s.margins for s in shots])
+    opinions = np.concatenate([s.opinions for s in shots])
     picked = np.concatenate([np.arange(len(s.margins)) == s.picked for s in shots])
+    best = best_of_all(shots)
     names = [s.shot for s in shots for _ in s.margins]
     by = {"ranker": margins, "ranker with prior": margins + np.concatenate([s.priors for s in shots])}
     for key in shots[0].geometry:
         by[key] = np.concatenate([s.geometry[key] for s in shots])
     return {
-        "picks": int(picked.sum()),
+        "picks": int(best.sum()),
         "proposals": len(margins),
-        **hidden(margins, picked),
+        **hidden(margins, best),
+        "best_of_each_shot": {"ranker": hidden(margins, picked), "designer": hidden(opinions, picked)},
         "agreement": agreement(by, picked, names),
     }
+
+
+def best_of_all(shots: Sequence[Scored]) -> NDArray[np.bool_]:
+    """Which of all proposals [P] the designer picks: one in a hundred, the best liked of what may be
+    picked."""
+    begins = np.cumsum([0, *(len(s.margins) for s in shots)])
+    may = np.array([begin + i for s, begin in zip(shots, begins, strict=False) for i in s.choices])
+    liked = np.concatenate([s.opinions for s in shots])
+    out = np.zeros(len(liked), bool)
+    out[may[np.argsort(-liked[may], kind="stable")[: round(len(liked) / _A_SHOT)]]] = True
+    return out
 
 
 def _shots(troupe: Troupe) -> Iterator[tuple[str, Scene, Shot, ProposalGrid]]:
@@ -123,24 +148,30 @@ def _scored(
     scene: Scene,
     shot: Shot,
     grid: ProposalGrid,
-    picked: int,
+    choices: list[int],
     ranker: Ranker,
     camerawork: Camerawork,
 ) -> Scored:
     margins: list[float] = []
     size = ranker.config.size
 
-    def drawn(begin: int) -> NDArray[np.uint8]:
-        cameras = grid.cameras[begin : begin + _AT_ONCE]
-        return camerawork.judge_frames(scene.staged, shot.style, grid.story, cameras, (size, size))
+    objects = objects_of(shot, grid, scene.filming, scene.staged)
 
-    for _, frames in one_ahead(drawn, range(0, len(grid.cameras), _AT_ONCE)):
-        margins += [round(float(m), 5) for m in ranker.score(frames).margin]
+    def drawn(begin: int) -> Seen:
+        cameras = grid.cameras[begin : begin + _AT_ONCE]
+        about = [objects] * len(cameras)
+        return camerawork.judge_frames(
+            scene.staged, shot.style, grid.story, cameras, (size, size), about=about
+        )
+
+    for _, seen in one_ahead(drawn, range(0, len(grid.cameras), _AT_ONCE)):
+        margins += [round(float(m), 5) for m in ranker.score(seen.frames, seen.guides).margin]
     measures = {k: np.array([c.measures[k] for c in grid.cameras]) for k in grid.cameras[0].measures}
     alone = {k: [round(float(v), 4) for v in values] for k, values in parts(measures).items()}
     alone["geometry score"] = [round(geometry_score(c.measures), 4) for c in grid.cameras]
     priors = [round(float(prior(c.measures)), 4) for c in grid.cameras]
-    return Scored(name, picked, margins, priors, alone)
+    opinions = [round(float(o), 5) for o in judged(grid.cameras)]
+    return Scored(name, choices[0], choices, opinions, margins, priors, alone)
 
 
 def _read(kept: Path, head: dict[str, Any]) -> tuple[list[Scored], set[str]]:

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from ..cinema.score import PRIOR, geometry_score
 from ..propose.types import CameraProposal
-from .filming import JUDGE_SIZE, SEGMENTS
+from .filming import JUDGE_SIZE, SEGMENTS, Seen
 
 if TYPE_CHECKING:
     from ranker.infer import Scores
@@ -27,16 +27,14 @@ class Judge(Protocol):
     name: str
     looks: bool
 
-    def scores(
-        self, cameras: tuple[CameraProposal, ...], frames: NDArray[np.uint8] | None
-    ) -> NDArray[np.float64]:
-        """Scores [P] of P proposals; frames are uint8 [P, 8, 224, 224, 3] where the judge looks."""
+    def scores(self, cameras: tuple[CameraProposal, ...], seen: Seen | None) -> NDArray[np.float64]:
+        """Scores [P] of P proposals; their eight frames of 224 × 224 where the judge looks."""
         ...
 
     def glance(
-        self, cameras: tuple[CameraProposal, ...], frames: NDArray[np.uint8], at: Sequence[int]
+        self, cameras: tuple[CameraProposal, ...], seen: Seen, at: Sequence[int]
     ) -> NDArray[np.float64]:
-        """Scores [P] by the frames ``at`` of the eight alone, uint8 [P, k, 224, 224, 3]."""
+        """Scores [P] by the frames ``at`` of the eight alone."""
         ...
 
     def logit(self, camera: CameraProposal, score: float) -> float | None:
@@ -50,13 +48,11 @@ class GeometryJudge:
     name = "geometry"
     looks = False
 
-    def scores(
-        self, cameras: tuple[CameraProposal, ...], frames: NDArray[np.uint8] | None
-    ) -> NDArray[np.float64]:
+    def scores(self, cameras: tuple[CameraProposal, ...], seen: Seen | None) -> NDArray[np.float64]:
         return np.array([geometry_score(c.measures) for c in cameras])
 
     def glance(
-        self, cameras: tuple[CameraProposal, ...], frames: NDArray[np.uint8], at: Sequence[int]
+        self, cameras: tuple[CameraProposal, ...], seen: Seen, at: Sequence[int]
     ) -> NDArray[np.float64]:
         return self.scores(cameras, None)
 
@@ -93,17 +89,15 @@ class DiscriminatorJudge:
         self._ranker.fits(SEGMENTS, JUDGE_SIZE[0])
         self._taste = load_taste(taste, load_card(weights).sha256) if taste is not None else None
 
-    def scores(
-        self, cameras: tuple[CameraProposal, ...], frames: NDArray[np.uint8] | None
-    ) -> NDArray[np.float64]:
-        if frames is None:
+    def scores(self, cameras: tuple[CameraProposal, ...], seen: Seen | None) -> NDArray[np.float64]:
+        if seen is None:
             raise ValueError("the discriminator judges by frames")
-        return self._scored(cameras, self._ranker.score(frames))
+        return self._scored(cameras, self._ranker.score(seen.frames, seen.guides))
 
     def glance(
-        self, cameras: tuple[CameraProposal, ...], frames: NDArray[np.uint8], at: Sequence[int]
+        self, cameras: tuple[CameraProposal, ...], seen: Seen, at: Sequence[int]
     ) -> NDArray[np.float64]:
-        return self._scored(cameras, self._ranker.glance(frames, at))
+        return self._scored(cameras, self._ranker.glance(seen.frames, at, seen.guides))
 
     def _scored(self, cameras: tuple[CameraProposal, ...], seen: Scores) -> NDArray[np.float64]:
         """From the logit: p_b itself runs out of digits near 1."""

@@ -13,10 +13,22 @@ import numpy as np
 from numpy.typing import NDArray
 
 from runtime.body.build import Body
-from runtime.body.skeleton import PALETTE, skinning_matrices
+from runtime.body.skeleton import JOINT, PALETTE, PARENTS, skinning_matrices
 from runtime.mesh import Mesh, join
 from runtime.raster.types import LOOSE, RenderScene
 from runtime.world import World, WorldObject
+
+
+def _of_head() -> tuple[int, ...]:
+    found = {JOINT["head"]}
+    for joint, parent in enumerate(PARENTS):  # parents come first
+        if parent in found:
+            found.add(joint)
+    return tuple(sorted(found))
+
+
+#: Joints of the head and of what is on it, as indices of a body's palette.
+_HEAD = _of_head()
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,6 +94,7 @@ def assemble(world: World, bodies: Mapping[str, Body]) -> StagedScene:
             light=world.light,
             fitting=np.concatenate(fitting) if fitting else None,
             levels=tuple(level.height for level in world.storeys),
+            heads=tuple(first + joint for first in first_joint.values() for joint in _HEAD),
         ),
         first_joint=first_joint,
         prop_entry=prop_entry,

@@ -1,0 +1,109 @@
+"""Guides of drawn proposals: whom a shot is about, and how the camera makes the picture move."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from ranker.guides import CHANNELS, FLOW, SIDE, pairs
+from vdsl.cinema.track import camera_axes, project
+from vdsl.lang import Source
+from vdsl.pipeline.acts import Act, stage_acts
+from vdsl.pipeline.filming import SEGMENTS, Camerawork, segment_frames
+from vdsl.pipeline.guides import objects_of, roles_of
+from vdsl.pipeline.script import check_source
+from vdsl.propose.story import propose
+from vdsl.propose.types import ProposalGrid
+
+STORY = """storyboard "t"
+proposals 16
+character anna = woman
+character ben = man
+scene s = apartment.kitchen
+anna at counter
+ben at table
+(anna wave) / (SHOT) FOCUS
+"""
+
+
+@pytest.fixture(scope="module")
+def camerawork() -> Camerawork:
+    return Camerawork("cpu")
+
+
+def proposed(shot: str, focus: str = "") -> tuple[Act, ProposalGrid]:
+    text = STORY.replace("SHOT", shot).replace("FOCUS", focus)
+    (act,) = stage_acts(check_source(Source("seen.vds", text)))
+    return act, propose(act.line, act.line.shots[0], act.state, act.filming)
+
+
+@pytest.mark.parametrize("words", ["push medium", "pan-left full", "pedestal-up full", "zoom-in medium"])
+def test_motion_is_where_what_is_seen_is_seen_next(words: str, camerawork: Camerawork) -> None:
+    act, grid = proposed(words)
+    camera = grid.cameras[0]
+    story = next(s for s in grid.story if s.index == camera.story)
+    about = [objects_of(act.line.shots[0], grid, act.filming, act.staged)]
+    seen = camerawork.judge_frames(act.staged, "board", grid.story, (camera,), about=about)
+    assert seen.guides is not None
+    flow = seen.guides.flow[0].astype(float)
+    track, at = camera.track, segment_frames(story.frames)
+    code = seen.guides.maps[0, ..., CHANNELS.index("nearness")]
+    step, compared = SIDE // FLOW, 0
+    for pair, (i, j) in enumerate(pairs(SEGMENTS)):
+        axes = camera_axes(track.rotation[at[i]])
+        for row in range(FLOW):
+            for column in range(FLOW):
+                block = code[i, row * step : (row + 1) * step, column * step : (column + 1) * step]
+                if block.min() == 0 or np.ptp(block.astype(int)) > 3:
+                    continue  # not of one depth
+                depth = 0.25 * np.exp((255 - block.mean()) / 254 * np.log(256))
+                x, y = ((k + 0.5) * 2 / FLOW - 1 for k in (column, row))
+                lens = np.array(track.sensor) / (2 * track.focal[at[i]])
+                ray = axes[2] + x * lens[0] * axes[0] - y * lens[1] * axes[1]
+                point = track.position[at[i]] + depth * ray
+                xy, away = project(
+                    point[None, None],
+                    track.position[at[j]][None],
+                    camera_axes(track.rotation[at[j]])[None],
+                    track.focal[at[j]][None],
+                    track.sensor,
+                )
+                if away[0, 0] < 0.1:
+                    continue
+                there = np.clip(2 * xy[0, 0] - 1 - (x, y), -3, 3)
+                np.testing.assert_allclose(flow[pair, row, column], there, atol=0.004, rtol=0.03)
+                compared += 1
+    assert compared > 100
+    assert np.abs(flow).max() > 0.05
+
+
+def test_a_still_camera_has_no_motion_and_a_glance_none_that_is_known(camerawork: Camerawork) -> None:
+    act, grid = proposed("static full eye-level")
+    about = [objects_of(act.line.shots[0], grid, act.filming, act.staged)] * 2
+    seen = camerawork.judge_frames(act.staged, "board", grid.story, grid.cameras[:2], about=about)
+    assert seen.guides is not None
+    assert np.abs(seen.guides.flow).max() < 1e-3
+    rise = seen.guides.maps[..., CHANNELS.index("rise")].astype(int)
+    assert (rise[:, :, 0] > rise[:, :, -1]).all()  # the top of a picture looks higher than its bottom
+    assert np.abs(rise.mean((2, 3)) - 128).max() < 20
+    glance = camerawork.judge_frames(
+        act.staged, "board", grid.story, grid.cameras[:2], which=(1, 6), about=about
+    )
+    assert glance.guides is not None
+    np.testing.assert_array_equal(glance.guides.maps, seen.guides.maps[:, [1, 6]])
+    assert np.isnan(glance.guides.flow).all()
+
+
+def test_whom_a_shot_is_about(camerawork: Camerawork) -> None:
+    act, grid = proposed("static medium eye-level two-shot")
+    ids = act.staged.object_ids
+    assert set(objects_of(act.line.shots[0], grid, act.filming, act.staged)) == set(ids.values())
+    act, grid = proposed("static medium eye-level")
+    (anna,) = objects_of(act.line.shots[0], grid, act.filming, act.staged)
+    assert anna == act.staged.object_ids["anna"]
+    roles = roles_of(act.staged, [(anna,), ()])
+    assert roles[:, [anna, act.staged.object_ids["ben"]]].tolist() == [[1, 2], [2, 2]]
+    assert (roles[:, : len(act.staged.world.objects)] == 0).all()
+    act, grid = proposed("static medium eye-level", "focus counter")
+    (counter,) = objects_of(act.line.shots[0], grid, act.filming, act.staged)
+    assert act.staged.world.objects[counter].path[-1] == "counter"

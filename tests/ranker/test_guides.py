@@ -1,0 +1,143 @@
+"""Guides beside pictures: on disk, in the mirror, and what a network makes of them."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+import torch
+from ranker_clips import FRAMES, SIZE, TINY, WORDS, clip, model_config
+
+from ranker.config import Phase
+from ranker.data import Dataset, ShardWriter
+from ranker.guided import Guided
+from ranker.guides import CHANNELS, FLOW, SIDE, Guides, joined, pairs
+from ranker.infer import Ranker
+from ranker.model import ShotRanker, frame_times, normalised
+from ranker.train import train
+
+
+def guides_of(rng: np.random.Generator, good: bool, movement: int) -> Guides:
+    """A subject that is in the upper half where the shot is good, and a camera that pans."""
+    maps = rng.integers(100, 110, (1, FRAMES, SIDE, SIDE, len(CHANNELS)), dtype=np.uint8)
+    maps[..., 0] = 0
+    top = 4 if good else 20
+    maps[:, :, top : top + 8, 10:16, 0] = 255
+    flow = rng.normal(0, 0.003, (1, len(pairs(FRAMES)), FLOW, FLOW, 2))
+    flow[..., 0] += (0, 0.2, -0.2)[movement]
+    return Guides(maps, flow.astype(np.float16))
+
+
+def write_guided(folder: Path, count: int, bare: int = 0) -> None:
+    """Clips whose pictures say nothing: only their guides tell the good and how the camera moves."""
+    rng = np.random.default_rng(0)
+    with ShardWriter(folder, WORDS, (SIZE, SIZE), FRAMES, shard=16) as writer:
+        for i in range(count):
+            good, m = i % 2 == 0, i // 2 % 3
+            pictures = clip(rng, True, 0, 0, 0)
+            words = WORDS.movements[m], WORDS.scales[0], WORDS.angles[0]
+            about = {"grade": 0.25} if good else {}
+            guides = guides_of(rng, good, m) if i >= bare else None
+            writer.add(pictures, good, *words, f"group-{i % 5}", 1.0 - good, "", about, guides)
+
+
+def test_guides_lie_beside_the_frames_of_their_clips(tmp_path: Path) -> None:
+    write_guided(tmp_path, 40)
+    data = Dataset(tmp_path)
+    found = data.guides(np.array([39, 0, 17]))
+    assert found is not None
+    np.testing.assert_array_equal(found.maps[..., 0].max((1, 3, 2)) > 0, True)
+    assert (found.maps[0, 0, 22, 12, 0], found.maps[1, 0, 6, 12, 0]) == (255, 255)
+    some = data.guides(np.array([39]), [2, 0])
+    assert some is not None
+    np.testing.assert_array_equal(some.maps[0], found.maps[0][[2, 0]])
+    np.testing.assert_array_equal(data.grade[:4], [0.25, 0, 0.25, 0])
+
+
+def test_a_set_in_which_some_have_none_is_taught_without(tmp_path: Path) -> None:
+    write_guided(tmp_path / "data", 24, bare=5)
+    data = Dataset(tmp_path / "data")
+    assert len(data) == 24
+    assert data.guides(np.arange(3)) is None
+    phases = (Phase(1, 0, batch=8), replace(TINY.phases[0], epochs=1))
+    train(tmp_path / "data", tmp_path / "out", replace(TINY, phases=phases))
+    assert Ranker.load(tmp_path / "out" / "weights", "cpu").config.guides == 0
+
+
+def test_damaged_guides_are_told(tmp_path: Path) -> None:
+    from ranker.errors import RankerError
+
+    write_guided(tmp_path, 16)
+    np.save(tmp_path / "shard-00000.flow.npy", np.zeros((3, 1, FLOW, FLOW, 2), np.float16))
+    with pytest.raises(RankerError, match="damaged"):
+        Dataset(tmp_path)
+
+
+def test_the_mirror_turns_maps_and_motion() -> None:
+    rng = np.random.default_rng(1)
+    guides = joined([guides_of(rng, True, 1), guides_of(rng, False, 0)])
+    mirrored = guides.mirrored()
+    np.testing.assert_array_equal(mirrored.maps[:, :, :, 0], guides.maps[:, :, :, -1])
+    np.testing.assert_array_equal(mirrored.flow[:, :, :, 0, 0], -guides.flow[:, :, :, -1, 0])
+    np.testing.assert_array_equal(mirrored.flow[:, :, :, 0, 1], guides.flow[:, :, :, -1, 1])
+    np.testing.assert_array_equal(mirrored.mirrored().maps, guides.maps)
+
+
+def test_a_shot_without_guides_is_judged_as_by_a_network_without() -> None:
+    torch.manual_seed(0)
+    config = model_config(guides=16, measures=3, marks=2)
+    model = ShotRanker(config).eval()
+    without = ShotRanker(replace(config, guides=0)).eval()
+    own = model.state_dict()
+    without.load_state_dict({name: own[name] for name in without.state_dict()})
+    rng = np.random.default_rng(2)
+    pictures = normalised(torch.from_numpy(np.stack([clip(rng, True, 1, 0, 0), clip(rng, False, 2, 1, 1)])))
+    times = frame_times(config).expand(2, -1)
+    guides = joined([guides_of(rng, True, 1), guides_of(rng, False, 0)])
+    kept_back = Guides(np.zeros_like(guides.maps), np.full_like(guides.flow, np.nan))
+    with torch.inference_mode():
+        plain, none = without(pictures, times), model(pictures, times)
+        empty = model(pictures, times, None, Guided.of(kept_back, times[0]))
+        told = model(pictures, times, None, Guided.of(guides, times[0]))
+    for name in ("logit", "movement", "scale", "angle", "told"):
+        torch.testing.assert_close(getattr(none, name), getattr(plain, name))
+        torch.testing.assert_close(getattr(empty, name), getattr(plain, name))
+    assert (told.logit - plain.logit).abs().max() > 1e-4
+
+
+def test_guides_are_learnt_from_and_a_shot_is_judged_by_its_own(tmp_path: Path) -> None:
+    write_guided(tmp_path / "data", 60)
+    phases = (Phase(25, 0, batch=16), replace(TINY.phases[0], epochs=1))
+    config = replace(TINY, phases=phases, unguided=0.0, guides=32, motion=0)
+    train(tmp_path / "data", tmp_path / "out", config)
+    ranker = Ranker.load(tmp_path / "out" / "weights", "cpu")
+    rng = np.random.default_rng(5)
+    frames = np.stack([clip(rng, True, 0, 0, 0) for _ in range(6)])
+    guides = joined([guides_of(rng, k % 2 == 0, k // 2) for k in range(6)])
+    scores = ranker.score(frames, guides)
+    np.testing.assert_array_equal(scores.margin > 0, [True, False] * 3)
+    np.testing.assert_array_equal(scores.movement.argmax(1), [0, 0, 1, 1, 2, 2])
+    one = ranker.score(frames[3:4], guides[3:4])
+    np.testing.assert_array_equal(one.margin, scores.margin[3:4])
+    at = (0, 2)
+    glanced = ranker.glance(
+        frames[:, list(at)], at, Guides(guides.maps[:, list(at)], np.full_like(guides.flow, np.nan))
+    )
+    assert glanced.margin[::2].min() > glanced.margin[1::2].max()
+    with pytest.raises(ValueError, match="guides: expected"):
+        ranker.score(frames, guides[:5])
+    assert ranker.score(frames[:0], guides[:0]).margin.shape == (0,)
+
+
+def test_a_good_clip_that_is_only_just_good_is_taught_as_less(tmp_path: Path) -> None:
+    from ranker.train import _batches
+
+    write_guided(tmp_path, 16)
+    config = replace(TINY, graded=0.4)
+    clips = np.arange(16)
+    batch = next(_batches(Dataset(tmp_path), clips, Phase(1, 0, batch=16), config, 0))
+    assert batch.query is None
+    by_clip = dict(zip(batch.clips.tolist(), batch.professional.tolist(), strict=True))
+    assert [by_clip[i] for i in (0, 1, 2)] == pytest.approx([1 - 0.4 * 0.75, 0, 1 - 0.4 * 0.75])

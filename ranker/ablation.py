@@ -39,6 +39,7 @@ def ablate(
     out, found = Path(out_dir), {}
     data = Dataset(data_dir)
     held = data.split(config.held_out, config.seed)[1]
+    held = held[~data.bare[held]]
     for name, (classes, contrast) in ABLATION.items():
         if report is not None:
             report({"training": name})

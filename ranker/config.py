@@ -48,7 +48,7 @@ class Phase:
 
     frames, key_frames: how many of the stored frames the query and the key of L_q see; they never
     share one, so together they are at most all
-    share: of the clips that an epoch goes through, others every time
+    share: of the clips that an epoch goes through, others every time; of guides alone, the share of bare ones
     """
 
     epochs: int
@@ -61,7 +61,8 @@ class Phase:
 
 @dataclass(frozen=True)
 class TrainConfig:
-    """How to train. The learning rate warms up over ``warmup`` of all steps and falls on a half cosine.
+    """How to train. The learning rate warms up over ``warmup`` of all steps and falls on a half cosine, once
+    for all phases that look at guides alone, and once for those that look at pictures.
 
     contrast_weight, class_weight, hint_weight: factors of L_q, L_c and L_h (0 leaves the loss out)
     dictionary, momentum, temperature: K, the momentum encoder's m and τ of L_q
@@ -69,6 +70,8 @@ class TrainConfig:
         heads, since a glance at a shot does not have it
     guides: as in :class:`ModelConfig`, for clips that come with them; unguided: share of the clips whose
         guides are kept from the network, so that it can judge by pictures alone
+    glanced: share of the batches in which guides are of as few frames as pictures, and motion is not known,
+        as at a glance
     graded: how much less than 1 the label of a good clip is that is only just good enough, where clips say
         how good they are
     smoothing: label smoothing; held_out: share of the clips, by whole groups, kept for evaluation
@@ -95,6 +98,7 @@ class TrainConfig:
     unmoved: float = 0.3
     guides: int = 256
     unguided: float = 0.3
+    glanced: float = 0.25
     graded: float = 0.3
     held_out: float = 0.15
     calibration: int = 40
@@ -108,15 +112,15 @@ class TrainConfig:
     watched: int = 256
 
 
-PAPER = TrainConfig(phases=(Phase(epochs=60, size=224, batch=128),))
+PAPER = TrainConfig(phases=(Phase(epochs=20, size=0, batch=128), Phase(epochs=60, size=224, batch=128)))
 CPU = TrainConfig(
     phases=(
-        Phase(epochs=5, size=64, frames=3, key_frames=1, batch=16),
+        Phase(epochs=20, size=0, batch=64, share=0.33),
+        Phase(epochs=4, size=64, frames=3, key_frames=1, batch=16),
         Phase(epochs=3, size=96, frames=3, key_frames=1, batch=16),
         Phase(epochs=2, size=128, frames=3, key_frames=1, batch=16),
-        Phase(epochs=1, size=160, frames=3, key_frames=1, batch=16),
     ),
-    inner=160,
+    inner=128,
     learning_rate=8e-4,
     momentum=0.99,
     contrast_weight=0.25,

@@ -28,6 +28,8 @@ from .vision import torchvision_models
 #: Of sRGB in 0..1, by channel, as ResNets are used to.
 PIXEL_MEAN = (0.485, 0.456, 0.406)
 PIXEL_STD = (0.229, 0.224, 0.225)
+#: How the names of parameters begin that only guides pass through.
+OF_GUIDES = ("guided.", "gathered.", "judged.", "reader_guided.", "marker_guided.")
 
 
 class Output(NamedTuple):
@@ -204,7 +206,8 @@ class ShotRanker(nn.Module):
     def _mapped(self, guides: Guided | None) -> _Mapped | None:
         if self.guided is None or guides is None:
             return None
-        frames, motion = self.guided(guides)
+        with torch.autocast(guides.maps.device.type, torch.bfloat16, enabled=self.training):
+            frames, motion = (part.float() for part in self.guided(guides))
         # what is amiss only for a time is seen by extremes
         over_time = [fuse(frames, guides.times), frames.amin(1), frames.amax(1)]
         shot = self.gathered(torch.cat([*over_time, motion], 1))

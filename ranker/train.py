@@ -11,61 +11,37 @@ import json
 import math
 import os
 import time
-from collections.abc import Callable, Iterator
-from concurrent.futures import ThreadPoolExecutor
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
-import cv2
 import numpy as np
 import torch
 from numpy.typing import NDArray
 from torch import Tensor, nn
 
+from .batches import Batch, batches, count_of
 from .config import PAPER, ModelConfig, Phase, TrainConfig, to_json
 from .curves import draw_curves
-from .data import MIRRORED, Dataset
+from .data import Dataset
 from .dictionary import Dictionary, follow, momentum_copy
 from .errors import RankerError
 from .evaluate import agreement_with_fp32, evaluate, mean
 from .guided import Guided
-from .guides import Guides
 from .infer import Ranker, fold_batch_norm
 from .int8 import Ranges, measured_ranges
 from .losses import binary_loss, class_loss, contrast_loss, hint_loss
-from .model import ShotRanker, frame_times, normalised
-from .motion import mirrored, motions
+from .model import OF_GUIDES, ShotRanker, normalised
+from .motion import motions
 from .weights import load_model, save_weights
 
 #: Clips by which eight bits are fitted, and by which they are compared with float32.
 _MEASURED, _COMPARED = 64, 200
 _WIDE_PACE = 0.1  # of the learning rate, for layers that read all that describes a shot
-_LUMA = (0.299, 0.587, 0.114)  # of sRGB, by channel (BT.601)
+#: Of the learning rate, for what reads guides, where pictures are looked at: many more clips taught it.
+_KEPT_PACE = 0.1
 Report = Callable[[dict[str, Any]], None]
-
-
-class Batch(NamedTuple):
-    """Clips of one step: frames uint8 [B, T, S, S, 3] and times [B, T] of query and key; labels.
-
-    query: None where guides alone are looked at; professional: 1 or less for good ones, by their grade,
-        NaN for doubtful ones
-    hints [B, K], marks [B, T, M] of the query's frames, mapped [B, T, M] of all: NaN is not known
-    moved [B, pairs, NUMBERS], likewise; guides of all frames, with zeros for maps where they are kept back
-    """
-
-    query: Tensor | None
-    query_times: Tensor
-    key: Tensor
-    key_times: Tensor
-    professional: Tensor
-    classes: Tensor
-    hints: Tensor
-    marks: Tensor
-    mapped: Tensor
-    moved: Tensor | None
-    guides: Guided | None
-    clips: Tensor
 
 
 def train(
@@ -126,7 +102,7 @@ def train(
     # Where an earlier run stopped.
     schedule = [phase for phase in config.phases for _ in range(phase.epochs)]
     pools = [framed if phase.size else learn for phase in schedule]
-    lengths = [math.ceil(_count(*of) / of[1].batch) for of in zip(pools, schedule, strict=True)]
+    lengths = [math.ceil(count_of(data, *of) / of[1].batch) for of in zip(pools, schedule, strict=True)]
     state = out / "checkpoint.pt"
     learning = {"model": model, "keys": keys, "dictionary": dictionary, "optimizer": optimizer}
     done, step = _resume(state, config, learning)
@@ -138,9 +114,12 @@ def train(
             torch.manual_seed(config.seed + 1 + epoch)  # what is dropped out hangs on the epoch alone
             model.train()
             sums = np.zeros(5)
-            for batch in _batches(data, pools[epoch], phase, config, epoch, moved):
+            alike = [n for n, other in enumerate(schedule) if (other.size > 0) == (phase.size > 0)]
+            before, total = (sum(lengths[n] for n in alike if n < m) for m in (epoch, len(schedule)))
+            for number, batch in enumerate(batches(data, pools[epoch], phase, config, epoch, moved)):
                 for group in optimizer.param_groups:
-                    group["lr"] = group["pace"] * learning_rate(config, step, sum(lengths))
+                    kept = _KEPT_PACE if group["guided"] and phase.size else 1.0
+                    group["lr"] = kept * group["pace"] * learning_rate(config, before + number, total)
 
                 parts = _losses(model, keys, dictionary, batch, config, device)
                 loss = parts[0] + config.class_weight * parts[1] + config.contrast_weight * parts[2]
@@ -246,7 +225,7 @@ def watch(
     was = model.training
     model.eval()
     right: list[NDArray[np.float64]] = []
-    for batch in _batches(data, some, phase, plain, -1, moved) if len(some) else ():
+    for batch in batches(data, some, phase, plain, -1, moved) if len(some) else ():
         with torch.autocast(device.type, torch.bfloat16, enabled=config.autocast):
             out = model(*_seen(batch, device))
         good, classes = batch.professional.numpy() > 0.5, batch.classes.numpy()
@@ -274,7 +253,7 @@ def calibrate(
         norm.reset_running_stats()
         norm.momentum = None  # the plain average of all batches
     model.train()
-    for count, batch in enumerate(_batches(data, clips, phase, config, epoch=-1)):
+    for count, batch in enumerate(batches(data, clips, phase, config, epoch=-1)):
         if count == config.calibration:
             break
         with torch.autocast(device.type, torch.bfloat16, enabled=config.autocast):
@@ -325,158 +304,20 @@ def _losses(
     return binary, classes, contrast, hint
 
 
-def _batches(
-    data: Dataset,
-    clips: NDArray[np.int64],
-    phase: Phase,
-    config: TrainConfig,
-    epoch: int,
-    moved: Tensor | None = None,
-) -> Iterator[Batch]:
-    """The clips in an order that hangs on seed and epoch alone; the next batch is read meanwhile."""
-    order = np.random.default_rng((config.seed, epoch + 1)).permutation(clips)[: _count(clips, phase)]
-    parts = [order[i : i + phase.batch] for i in range(0, len(order), phase.batch)]
-    if len(parts) > 1 and len(parts[-1]) == 1:  # batch norm needs company
-        parts[-1] = np.append(parts[-1], order[0])
-    ahead = max(2, config.threads)
-    with ThreadPoolExecutor(max(1, config.threads // 2)) as readers:
-        made = [
-            readers.submit(_batch, data, part, phase, config, (epoch + 1, n), moved)
-            for n, part in enumerate(parts[:ahead])
-        ]
-        for n in range(len(parts)):
-            batch = made.pop(0).result()
-            if n + ahead < len(parts):
-                key = (epoch + 1, n + ahead)
-                made.append(readers.submit(_batch, data, parts[n + ahead], phase, config, key, moved))
-            yield batch
-
-
-def _count(clips: NDArray[np.int64], phase: Phase) -> int:
-    return max(min(2, len(clips)), round(phase.share * len(clips)))
-
-
-def _batch(
-    data: Dataset,
-    clips: NDArray[np.int64],
-    phase: Phase,
-    config: TrainConfig,
-    key: tuple[int, int],
-    moved: Tensor | None,
-) -> Batch:
-    rng = np.random.default_rng((config.seed, 1, *key))
-    times = frame_times(ModelConfig((), (), (), frames=data.frames)).numpy()
-    mirror = mirror_words(data.words.movements)
-    count, keyed = phase.frames, phase.key_frames if config.contrast_weight else 0
-    if not phase.size:
-        count, keyed = data.frames, 0
-    if count + keyed > data.frames:
-        raise RankerError(f"query and key need {count + keyed} frames, the clips have {data.frames}")
-    classes, hints = data.classes[clips], data.hints[1][clips]
-    turned, turned_marks = (
-        np.array([name.startswith(MIRRORED) for name in names], bool)
-        for names in (data.hints[0], data.frame_hints[0])
-    )
-    guides = data.guides(clips) if config.guides else None
-    frames, places, marks, mapped, maps, flow = [], [], [], [], [], []
-    own = None if moved is None else moved[torch.from_numpy(clips)]
-    for row, index in enumerate(clips):
-        chosen = rng.permutation(data.frames) if phase.size else np.arange(data.frames)
-        picked = np.concatenate([np.sort(chosen[:count]), np.sort(chosen[count : count + keyed])])
-        of_frames, flipped = data.frame_hints[1][index], False
-        if phase.size:
-            clip = data.clip(int(index), picked.tolist(), phase.size)
-            clip, flipped = varied(clip, rng) if config.augment else (clip, False)
-            frames.append(clip)
-        elif config.augment:
-            flipped = bool(rng.random() < 0.5)
-        if flipped:
-            hints[row, turned] *= -1
-            of_frames = np.where(turned_marks, -of_frames, of_frames)
-            if classes[row, 0] >= 0:
-                classes[row, 0] = mirror[classes[row, 0]]
-            if own is not None:
-                own[row] = mirrored(own[row])
-        if guides is not None:
-            told = guides[row : row + 1]
-            told = told.mirrored() if flipped else told
-            kept_back = phase.size > 0 and rng.random() < config.unguided
-            maps.append(told.maps * np.uint8(not kept_back))
-            flow.append(told.flow)
-            mapped.append(of_frames if not kept_back else np.full_like(of_frames, np.nan))
-        if own is not None and config.augment and rng.random() < config.unmoved:
-            own[row] = torch.nan
-        if own is not None and guides is not None and not kept_back:
-            own[row] = torch.nan  # what guides tell need not be guessed at
-        marks.append(of_frames[picked[:count]])
-        places.append(times[picked])
-    pictures, moments = (
-        torch.from_numpy(np.stack(frames)) if frames else None,
-        torch.from_numpy(np.stack(places)),
-    )
-    professional = data.professional[clips] * (1 - config.graded * (1 - data.grade[clips]))
-    professional = np.where(data.doubtful[clips], np.nan, professional)
-    return Batch(
-        None if pictures is None else pictures[:, :count],
-        moments[:, :count],
-        moments[:, :0] if pictures is None else pictures[:, count:],
-        moments[:, count:],
-        torch.from_numpy(professional.astype(np.float32)),
-        torch.from_numpy(classes),
-        torch.from_numpy(hints),
-        torch.from_numpy(np.stack(marks)),
-        torch.from_numpy(np.stack(mapped or marks)),
-        own,
-        None if guides is None else _guided(np.concatenate(maps), np.concatenate(flow), times),
-        torch.from_numpy(clips),
-    )
-
-
-def _guided(maps: NDArray[np.uint8], flow: NDArray[np.float16], times: NDArray[np.float32]) -> Guided:
-    """Guides of a batch; motion of those that are kept back is not known."""
-    guided = Guided.of(
-        Guides(np.ascontiguousarray(maps), np.ascontiguousarray(flow)), torch.from_numpy(times)
-    )
-    flow_known = guided.known.view(-1, 1, 1, 1, 1)
-    return guided._replace(flow=torch.where(flow_known, guided.flow, torch.nan))
-
-
-def varied(clip: NDArray[np.uint8], rng: np.random.Generator) -> tuple[NDArray[np.uint8], bool]:
-    """The clip uint8 [T, H, W, 3] in another light and perhaps mirrored; whether it was.
-
-    Brightness, contrast and the colours say nothing about how well a shot is taken.
-    """
-    gain = rng.uniform(0.85, 1.15) * rng.uniform(0.95, 1.05, 3)
-    gray = max(0.0, rng.uniform(-0.5, 1.0))
-    mixed = gain[:, None] * ((1 - gray) * np.eye(3) + gray * np.asarray(_LUMA))
-    lift = rng.uniform(-18, 18) + 128 - 128 * gain
-    count, height, width = clip.shape[:3]
-    tall = np.ascontiguousarray(clip).reshape(count * height, width, 3)
-    turned = cv2.transform(tall, np.column_stack([mixed, lift]))
-    out = np.asarray(turned, np.uint8).reshape(clip.shape)
-    flipped = bool(rng.random() < 0.5)
-    return (out[:, :, ::-1] if flipped else out), flipped
-
-
-def mirror_words(words: tuple[str, ...]) -> list[int]:
-    """For each word the index of its mirror image: ``pan-left`` for ``pan-right``, itself for most."""
-    swap = {"left": "right", "right": "left"}
-    mirrored = ["-".join(swap.get(part, part) for part in word.split("-")) for word in words]
-    return [words.index(m) if m in words else i for i, m in enumerate(mirrored)]
-
-
 def _optimizer(model: ShotRanker, config: TrainConfig) -> torch.optim.Optimizer:
-    # What sums up thousands of features would leap at the pace of the rest.
-    wide = {id(p) for p in model.parameters() if p.ndim == 2 and p.shape[1] >= 3 * model.width}
-    decayed = [p for p in model.parameters() if p.ndim > 1 and id(p) not in wide]
+    kinds: dict[tuple[bool, bool, bool], list[nn.Parameter]] = {}
+    for name, p in model.named_parameters():
+        # what sums up thousands of features would leap at the pace of the rest
+        wide, guided = p.ndim == 2 and p.shape[1] >= 3 * model.width, name.startswith(OF_GUIDES)
+        kinds.setdefault((p.ndim > 1, wide, guided), []).append(p)
     groups = [
-        {"params": decayed, "weight_decay": config.weight_decay, "pace": 1.0},
         {
-            "params": [p for p in model.parameters() if id(p) in wide],
-            "weight_decay": config.weight_decay,
-            "pace": _WIDE_PACE,
-        },
-        {"params": [p for p in model.parameters() if p.ndim <= 1], "weight_decay": 0.0, "pace": 1.0},
+            "params": params,
+            "weight_decay": config.weight_decay if decays else 0.0,
+            "pace": _WIDE_PACE if wide else 1.0,
+            "guided": guided,
+        }
+        for (decays, wide, guided), params in kinds.items()
     ]
     if config.optimizer == "adamw":
         return torch.optim.AdamW(groups, lr=config.learning_rate)

@@ -73,7 +73,7 @@ def test_motion_is_where_what_is_seen_is_seen_next(words: str, camerawork: Camer
                 there = np.clip(2 * xy[0, 0] - 1 - (x, y), -3, 3)
                 np.testing.assert_allclose(flow[pair, row, column], there, atol=0.004, rtol=0.03)
                 compared += 1
-    assert compared > 100
+    assert compared > 50
     assert np.abs(flow).max() > 0.05
 
 

@@ -10,6 +10,7 @@ import pytest
 import torch
 from ranker_clips import FRAMES, SIZE, TINY, WORDS, clip, model_config
 
+from ranker.batches import batches
 from ranker.config import Phase
 from ranker.data import Dataset, ShardWriter
 from ranker.guided import Guided
@@ -132,12 +133,39 @@ def test_guides_are_learnt_from_and_a_shot_is_judged_by_its_own(tmp_path: Path) 
 
 
 def test_a_good_clip_that_is_only_just_good_is_taught_as_less(tmp_path: Path) -> None:
-    from ranker.train import _batches
-
     write_guided(tmp_path, 16)
     config = replace(TINY, graded=0.4)
     clips = np.arange(16)
-    batch = next(_batches(Dataset(tmp_path), clips, Phase(1, 0, batch=16), config, 0))
+    batch = next(batches(Dataset(tmp_path), clips, Phase(1, 0, batch=16), config, 0))
     assert batch.query is None
     by_clip = dict(zip(batch.clips.tolist(), batch.professional.tolist(), strict=True))
     assert [by_clip[i] for i in (0, 1, 2)] == pytest.approx([1 - 0.4 * 0.75, 0, 1 - 0.4 * 0.75])
+
+
+def test_clips_without_frames_are_learnt_from_by_their_guides_alone(tmp_path: Path) -> None:
+    rng = np.random.default_rng(3)
+    data = tmp_path / "data"
+    with ShardWriter(data, WORDS, (SIZE, SIZE), FRAMES, shard=16) as writer:
+        for i in range(48):
+            good, m = i % 2 == 0, i // 2 % 3
+            words = WORDS.movements[m], WORDS.scales[0], WORDS.angles[0]
+            pictures = clip(rng, True, 0, 0, 0) if i % 4 == 1 else None
+            writer.add(pictures, good, *words, "a", 1.0 - good, "", {"n": i}, guides_of(rng, good, m))
+    assert len(writer) == 12
+    found = Dataset(data)
+    assert (found.about()["clips"], found.about()["bare"], len(found)) == (12, 36, 48)
+    for index, label in enumerate(found.labels):
+        assert label.bare == (label.about["n"] % 4 != 1) == found.bare[index]
+        own = found.guides(np.array([index]))
+        assert own is not None
+        assert own.maps[0, 0, 6, 12, 0] == (255 if label.professional else 0)
+        if not label.bare:
+            assert found.clip(index, [0], SIZE).shape == (1, SIZE, SIZE, 3)
+    with pytest.raises(ValueError, match="needs guides"):
+        writer.add(None, True, None, None, None, "a", 0.0)
+    phases = (Phase(30, 0, batch=16), replace(TINY.phases[0], epochs=1, batch=6))
+    train(data, tmp_path / "out", replace(TINY, phases=phases, unguided=0.0, guides=32))
+    ranker = Ranker.load(tmp_path / "out" / "weights", "cpu")
+    frames = np.stack([clip(rng, True, 0, 0, 0) for _ in range(4)])
+    guides = joined([guides_of(rng, k % 2 == 0, 0) for k in range(4)])
+    np.testing.assert_array_equal(ranker.score(frames, guides).margin > 0, [True, False] * 2)

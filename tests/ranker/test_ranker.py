@@ -12,13 +12,14 @@ import torch
 from ranker_clips import FRAMES, SIZE, TINY, WORDS, model_config, write_clips
 from safetensors.torch import load_file
 
+from ranker.batches import mirror_words, varied
 from ranker.config import CPU, PAPER, Phase, to_json, train_from_json
 from ranker.data import Dataset
 from ranker.errors import RankerError
 from ranker.evaluate import auc, evaluate
 from ranker.infer import Ranker, fold_batch_norm
 from ranker.model import ShotRanker, frame_times, normalised
-from ranker.train import learning_rate, mirror_words, train, varied, watch
+from ranker.train import learning_rate, train, watch
 from ranker.weights import load_card, load_model, save_weights
 from vdsl.pipeline.judging import DiscriminatorJudge
 

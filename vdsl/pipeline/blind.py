@@ -1,0 +1,103 @@
+"""The ranker's choice beside a random take, unnamed: sheets to look at and say which is better.
+
+``python -m vdsl.pipeline.blind docs/ranker/blind`` plays lines of stories for testing, which no training saw,
+proposes cameras, and draws three frames each of the take that ``compile`` would score best and of one drawn
+by lot, left and right by lot; ``key.json`` beside the sheets says which is which. Assumes the library and
+weights.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+from PIL import Image
+
+from ..propose.types import CameraProposal, ProposalGrid
+from .captions import grid
+from .casting import TEST_EVERY, Scene, Troupe
+from .filming import Camerawork
+from .guides import objects_of
+from .judging import DiscriminatorJudge
+
+_SEED = 2_000_003  # added to the seed: other stories than of training sets and hidden picks
+_PROPOSALS, _AT_ONCE = 60, 16
+_LEAST = 8  # proposals that there have to be to choose from
+_CELL = (256, 144)  # pixels of a frame
+_AT = (0.1, 0.5, 0.9)  # of a take's length
+_ROWS = 10  # of a sheet
+_A_STORY = 2  # lines
+
+
+def blind(out: Path, lines: int, weights: Path | None = None, seed: int = 0, device: str = "cpu") -> Path:
+    """Draw sheets of ``lines`` lines into ``out``; returns the key. Raises RankerError, OSError."""
+    out.mkdir(parents=True, exist_ok=True)
+    judge, camerawork = DiscriminatorJudge(weights, device), Camerawork(device)
+    rng, cells, key = np.random.default_rng(seed), [], []
+    for number, (scene, shown) in enumerate(_lines(seed, lines), 1):
+        scores = _scores(judge, camerawork, scene, shown)
+        chosen = int(scores.argmax())
+        other = int(rng.choice([i for i in range(len(scores)) if i != chosen]))
+        sides = [chosen, other] if rng.random() < 0.5 else [other, chosen]
+        for letter, i in zip("AB", sides, strict=True):
+            cells.append(
+                (f"{number} {letter}", shown.shot, _strip(camerawork, scene, shown, shown.cameras[i]))
+            )
+        said = {"line": number, "shot": shown.shot, "place": scene.place, "chosen": "AB"[sides.index(chosen)]}
+        key.append(said | {"scores": [round(float(scores[i]), 4) for i in sides]})
+        print(number, shown.shot, flush=True)
+    for begin in range(0, len(cells), 2 * _ROWS):
+        path = out / f"sheet-{begin // (2 * _ROWS) + 1}.png"
+        grid(cells[begin : begin + 2 * _ROWS], 2).save(path)
+    path = out / "key.json"
+    path.write_text(json.dumps(key, indent=1) + "\n", "utf-8")
+    return path
+
+
+def _lines(seed: int, lines: int) -> Iterator[tuple[Scene, ProposalGrid]]:
+    troupe, number, found = Troupe(seed + _SEED), TEST_EVERY - 1, 0
+    while found < lines:
+        taken = 0
+        for scene in troupe.scenes(number, _PROPOSALS, "test"):
+            if found < lines and taken < _A_STORY and len(scene.grids[0].cameras) >= _LEAST:
+                yield scene, scene.grids[0]
+                found, taken = found + 1, taken + 1
+        number += TEST_EVERY
+
+
+def _scores(
+    judge: DiscriminatorJudge, camerawork: Camerawork, scene: Scene, shown: ProposalGrid
+) -> np.ndarray:
+    shot, parts = scene.shots[0], []
+    objects = objects_of(shot, shown, scene.filming, scene.staged)
+    for begin in range(0, len(shown.cameras), _AT_ONCE):
+        cameras = shown.cameras[begin : begin + _AT_ONCE]
+        about = [objects] * len(cameras)
+        seen = camerawork.judge_frames(scene.staged, shot.style, shown.story, cameras, about=about)
+        parts.append(judge.scores(cameras, seen))
+    return np.concatenate(parts)
+
+
+def _strip(camerawork: Camerawork, scene: Scene, shown: ProposalGrid, camera: CameraProposal) -> Image.Image:
+    """Three frames of a take, side by side."""
+    story = next(s for s in shown.story if s.index == camera.story)
+    at = np.round(np.array(_AT) * (story.frames - 1)).astype(int)
+    frames = camerawork.frames_at(scene.staged, scene.shots[0].style, story, camera, _CELL, at)
+    return Image.fromarray(np.concatenate(list(frames), axis=1))
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
+    parser.add_argument("out", type=Path)
+    parser.add_argument("--lines", type=int, default=50)
+    parser.add_argument("--weights", type=Path)
+    parser.add_argument("--seed", type=int, default=0)
+    options = parser.parse_args()
+    print(blind(options.out, options.lines, options.weights, options.seed))
+
+
+if __name__ == "__main__":
+    main()

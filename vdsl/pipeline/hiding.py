@@ -100,9 +100,10 @@ def hide(
 def told(shots: list[Scored]) -> dict[str, Any]:
     """``picks``, ``proposals``, how high the picks are among all, and agreement within each shot.
 
-    As in the paper one in a hundred of all proposals is picked: those the designer likes best, whatever shot
-    they are of. ``best_of_each_shot``: the same of the one that is liked best in every shot, though it may be
-    no good one, by the ranker, and by the designer's own opinion, which no ranker can outdo.
+    ``with_prior``: the same as ``compile`` puts takes in order. As in the paper one in a hundred of all
+    proposals is picked: those the designer likes best, whatever shot they are of. ``best_of_each_shot``: the
+    same of the one that is liked best in every shot, though it may be no good one, by the ranker, and by the
+    designer's own opinion, which no ranker can outdo.
     """
     if not shots:
         return {"picks": 0, "proposals": 0, **hidden(np.zeros(0), np.zeros(0, bool)), "agreement": {}}
@@ -118,6 +119,7 @@ def told(shots: list[Scored]) -> dict[str, Any]:
         "picks": int(best.sum()),
         "proposals": len(margins),
         **hidden(margins, best),
+        "with_prior": hidden(by["ranker with prior"], best),
         "best_of_each_shot": {"ranker": hidden(margins, picked), "designer": hidden(opinions, picked)},
         "agreement": agreement(by, picked, names),
     }

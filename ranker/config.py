@@ -112,7 +112,7 @@ class TrainConfig:
     watched: int = 256
 
 
-PAPER = TrainConfig(phases=(Phase(epochs=20, size=0, batch=128), Phase(epochs=60, size=224, batch=128)))
+PAPER = TrainConfig(phases=(Phase(epochs=60, size=224, batch=128),))
 CPU = TrainConfig(
     phases=(
         Phase(epochs=20, size=0, batch=64, share=0.33),

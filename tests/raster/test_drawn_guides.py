@@ -45,11 +45,11 @@ def drawn(
     return drawer.render(still(2), views, size, ids=True, depth=True, roles=table)
 
 
-@pytest.mark.parametrize("style", ["board", "clay", "ink", "plain"])
-@pytest.mark.parametrize("size", [(224, 224), (97, 61), (20, 15)])
-def test_guides_are_shares_of_what_the_ids_show(size: tuple[int, int], style: str) -> None:
-    if style != "board" and size != (97, 61):
-        pytest.skip("one size is enough")
+@pytest.mark.parametrize(
+    ("style", "size"),
+    [("board", (224, 224)), ("board", (20, 15)), *((style, (97, 61)) for style in STYLES)],
+)
+def test_guides_are_shares_of_what_the_ids_show(style: str, size: tuple[int, int]) -> None:
     frames = drawn(room(), size, style)
     assert frames.guides is not None
     assert frames.ids is not None

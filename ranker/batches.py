@@ -63,10 +63,8 @@ def batches(
     rng = np.random.default_rng((config.seed, epoch + 1))
     order = rng.permutation(clips)
     if not phase.size:  # of bare clips only as many as are shared out, of the others all
-        order = rng.permutation(
-            order[np.argsort(data.bare[order], kind="stable")][: count_of(data, clips, phase)]
-        )
-    order = order[: count_of(data, clips, phase)]
+        order = order[np.argsort(data.bare[order], kind="stable")]
+    order = rng.permutation(order[: count_of(data, clips, phase)])
     parts = [order[i : i + phase.batch] for i in range(0, len(order), phase.batch)]
     if len(parts) > 1 and len(parts[-1]) == 1:  # batch norm needs company
         parts[-1] = np.append(parts[-1], order[0])

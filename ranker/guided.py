@@ -37,7 +37,7 @@ class Guided(NamedTuple):
 
     @property
     def known(self) -> Tensor:
-        """Which shots have guides, bool [B]: no camera looks straight down with all of its picture."""
+        """Which shots have guides, bool [B]: no line of sight is told by a 0."""
         return (self.maps[..., CHANNELS.index("rise")] != 0).flatten(1).any(1)
 
 

@@ -90,6 +90,8 @@ def train(
     )
     if not shape.guides and any(phase.size == 0 for phase in config.phases):
         config = replace(config, phases=tuple(phase for phase in config.phases if phase.size))
+        if not config.phases:
+            raise RankerError(f"{data_dir}: its clips have no guides, and the recipe looks at nothing else")
     moved = torch.from_numpy(motions(data)) if config.motion else None
     model = ShotRanker(shape)
     began = take_over(model, start) if start else None

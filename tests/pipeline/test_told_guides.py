@@ -4,15 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from proposed_shots import proposed
 
 from ranker.guides import CHANNELS, FLOW, SIDE, pairs
 from vdsl.cinema.track import camera_axes, project
-from vdsl.lang import Source
-from vdsl.pipeline.acts import Act, stage_acts
+from vdsl.pipeline.acts import Act
 from vdsl.pipeline.filming import SEGMENTS, Camerawork, segment_frames
 from vdsl.pipeline.guides import objects_of, roles_of
-from vdsl.pipeline.script import check_source
-from vdsl.propose.story import propose
 from vdsl.propose.types import ProposalGrid
 
 STORY = """storyboard "t"
@@ -31,15 +29,13 @@ def camerawork() -> Camerawork:
     return Camerawork("cpu")
 
 
-def proposed(shot: str, focus: str = "") -> tuple[Act, ProposalGrid]:
-    text = STORY.replace("SHOT", shot).replace("FOCUS", focus)
-    (act,) = stage_acts(check_source(Source("seen.vds", text)))
-    return act, propose(act.line, act.line.shots[0], act.state, act.filming)
+def filmed(shot: str, focus: str = "") -> tuple[Act, ProposalGrid]:
+    return proposed(STORY.replace("SHOT", shot).replace("FOCUS", focus))
 
 
 @pytest.mark.parametrize("words", ["push medium", "pan-left full", "pedestal-up full", "zoom-in medium"])
 def test_motion_is_where_what_is_seen_is_seen_next(words: str, camerawork: Camerawork) -> None:
-    act, grid = proposed(words)
+    act, grid = filmed(words)
     camera = grid.cameras[0]
     story = next(s for s in grid.story if s.index == camera.story)
     about = [objects_of(act.line.shots[0], grid, act.filming, act.staged)]
@@ -78,7 +74,7 @@ def test_motion_is_where_what_is_seen_is_seen_next(words: str, camerawork: Camer
 
 
 def test_a_still_camera_has_no_motion_and_a_glance_none_that_is_known(camerawork: Camerawork) -> None:
-    act, grid = proposed("static full eye-level")
+    act, grid = filmed("static full eye-level")
     about = [objects_of(act.line.shots[0], grid, act.filming, act.staged)] * 2
     seen = camerawork.judge_frames(act.staged, "board", grid.story, grid.cameras[:2], about=about)
     assert seen.guides is not None
@@ -95,15 +91,15 @@ def test_a_still_camera_has_no_motion_and_a_glance_none_that_is_known(camerawork
 
 
 def test_whom_a_shot_is_about(camerawork: Camerawork) -> None:
-    act, grid = proposed("static medium eye-level two-shot")
+    act, grid = filmed("static medium eye-level two-shot")
     ids = act.staged.object_ids
     assert set(objects_of(act.line.shots[0], grid, act.filming, act.staged)) == set(ids.values())
-    act, grid = proposed("static medium eye-level")
+    act, grid = filmed("static medium eye-level")
     (anna,) = objects_of(act.line.shots[0], grid, act.filming, act.staged)
     assert anna == act.staged.object_ids["anna"]
     roles = roles_of(act.staged, [(anna,), ()])
     assert roles[:, [anna, act.staged.object_ids["ben"]]].tolist() == [[1, 2], [2, 2]]
     assert (roles[:, : len(act.staged.world.objects)] == 0).all()
-    act, grid = proposed("static medium eye-level", "focus counter")
+    act, grid = filmed("static medium eye-level", "focus counter")
     (counter,) = objects_of(act.line.shots[0], grid, act.filming, act.staged)
     assert act.staged.world.objects[counter].path[-1] == "counter"

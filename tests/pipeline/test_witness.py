@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from proposed_shots import proposed
 
 from vdsl.lang import Source
 from vdsl.pipeline.compile import Act, stage_acts
@@ -33,14 +34,12 @@ def camerawork() -> Camerawork:
     return Camerawork("cpu")
 
 
-def proposed(shot: str, options: str = "") -> tuple[Act, ProposalGrid]:
-    text = STORY.replace("SHOT", shot).replace("OPTIONS", options)
-    (act,) = stage_acts(check_source(Source("seen.vds", text)))
-    return act, propose(act.line, act.line.shots[0], act.state, act.filming)
+def filmed(shot: str, options: str = "") -> tuple[Act, ProposalGrid]:
+    return proposed(STORY.replace("SHOT", shot).replace("OPTIONS", options))
 
 
 def test_what_is_seen_is_as_was_promised(camerawork: Camerawork) -> None:
-    act, grid = proposed("static medium")
+    act, grid = filmed("static medium")
     shot = act.line.shots[0]
     scores = GeometryJudge().scores(grid.cameras, None)
     vetted = vet(grid, scores, best(grid, 3), (act.staged, shot, act.filming), camerawork)
@@ -54,7 +53,7 @@ def test_what_is_seen_is_as_was_promised(camerawork: Camerawork) -> None:
 
 def test_a_subject_behind_a_wall_gives_way_to_the_next(camerawork: Camerawork) -> None:
     """The walls that were promised to be taken away are put back before the best takes."""
-    act, grid = proposed("static full", "lens 50mm")
+    act, grid = filmed("static full", "lens 50mm")
     shot = act.line.shots[0]
     scores = GeometryJudge().scores(grid.cameras, None)
     scores += np.array([c.hidden_walls.any() for c in grid.cameras])  # whoever judges likes these best
@@ -81,7 +80,7 @@ def test_a_subject_behind_a_wall_gives_way_to_the_next(camerawork: Camerawork) -
 
 
 def test_things_are_looked_at_and_places_are_not(camerawork: Camerawork) -> None:
-    act, grid = proposed("static close-up", "focus table")
+    act, grid = filmed("static close-up", "focus table")
     scores = GeometryJudge().scores(grid.cameras, None)
     vet(grid, scores, best(grid, 2), (act.staged, act.line.shots[0], act.filming), camerawork)
     shares = [c.measures[MEASURE] for c in grid.cameras if MEASURE in c.measures]
@@ -132,7 +131,7 @@ anna at bed facing wardrobe
 
 def test_what_came_out_otherwise_gives_way(camerawork: Camerawork) -> None:
     """Pushes run backwards are pulls: they are not kept under the name of a push, however much liked."""
-    act, grid = proposed("push medium")
+    act, grid = filmed("push medium")
     shot, scene = act.line.shots[0], (act.staged, act.line.shots[0], act.filming)
     scores = GeometryJudge().scores(grid.cameras, None)
     assert not vet(grid, scores, best(grid, 3), scene, camerawork).failed

@@ -13,6 +13,7 @@ from ranker_clips import FRAMES, SIZE, TINY, WORDS, clip, model_config
 from ranker.batches import batches
 from ranker.config import Phase
 from ranker.data import Dataset, ShardWriter
+from ranker.errors import RankerError
 from ranker.guided import Guided
 from ranker.guides import CHANNELS, FLOW, SIDE, Guides, joined, pairs
 from ranker.infer import Ranker
@@ -65,11 +66,11 @@ def test_a_set_in_which_some_have_none_is_taught_without(tmp_path: Path) -> None
     phases = (Phase(1, 0, batch=8), replace(TINY.phases[0], epochs=1))
     train(tmp_path / "data", tmp_path / "out", replace(TINY, phases=phases))
     assert Ranker.load(tmp_path / "out" / "weights", "cpu").config.guides == 0
+    with pytest.raises(RankerError, match="no guides, and the recipe looks at nothing else"):
+        train(tmp_path / "data", tmp_path / "other", replace(TINY, phases=phases[:1]))
 
 
 def test_damaged_guides_are_told(tmp_path: Path) -> None:
-    from ranker.errors import RankerError
-
     write_guided(tmp_path, 16)
     np.save(tmp_path / "shard-00000.flow.npy", np.zeros((3, 1, FLOW, FLOW, 2), np.float16))
     with pytest.raises(RankerError, match="damaged"):

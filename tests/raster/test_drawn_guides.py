@@ -140,3 +140,22 @@ def test_roles_that_do_not_fit_are_told() -> None:
     for wrong in (np.zeros((1, 5), np.uint8), np.zeros((2, 13), np.uint8), np.zeros((1, 13))):
         with pytest.raises(ValueError, match="roles: expected uint8"):
             drawer.render(still(2), views, (32, 32), roles=wrong)
+
+
+@pytest.mark.parametrize("style", ["board", "plain"])
+def test_what_is_not_shaded_shows_the_same(style: str) -> None:
+    drawer = Renderer("cpu", STYLES[style])
+    drawer.load(room())
+    views = looking(
+        [(2.6, -1.8, 1.5)] * 4 + [(0.5, 0.2, 1.6)], [(2.0, 1.8, 1.0)] * 5, moments=[0, 1, 2, 3, 0]
+    )
+    palettes, roles = still(2, 4), np.zeros((5, 13), np.uint8)
+    palettes[:, :, 0, 3] = np.linspace(0, 0.5, 4)[:, None]
+    roles[:, PERSON] = SUBJECT
+    whole, bare = (
+        drawer.render(palettes, views, (96, 54), ids=True, depth=True, roles=roles, pictures=pictures)
+        for pictures in (True, False)
+    )
+    assert bare.color.shape == (5, 0, 0, 3)
+    for name in ("ids", "depth", "guides"):
+        np.testing.assert_array_equal(getattr(bare, name), getattr(whole, name), err_msg=name)

@@ -89,7 +89,7 @@ class Camerawork:
     ) -> NDArray[np.int32]:
         """Object ids in the same frames: int32 [P, 8, H, W]."""
         views, moments = self._segments(staged, stories, cameras, range(SEGMENTS))
-        ids = self._renderer(staged, style).render(moments, views, size, ids=True).ids
+        ids = self._renderer(staged, style).render(moments, views, size, ids=True, pictures=False).ids
         assert ids is not None
         return ids.reshape(len(cameras), SEGMENTS, *ids.shape[1:])
 

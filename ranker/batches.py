@@ -33,6 +33,7 @@ class Batch(NamedTuple):
 
     query: None where guides alone are looked at; professional: 1 or less for good ones, by their grade,
         NaN for doubtful ones
+    opinion [B], how well they are liked; NaN is not known
     hints [B, K], marks [B, T, M] of the query's frames, mapped [B, T, M] of all: NaN is not known
     moved [B, pairs, NUMBERS], likewise; guides of all frames, with zeros for maps where they are kept back
     """
@@ -42,6 +43,7 @@ class Batch(NamedTuple):
     key: Tensor
     key_times: Tensor
     professional: Tensor
+    opinion: Tensor
     classes: Tensor
     hints: Tensor
     marks: Tensor
@@ -129,6 +131,7 @@ def _batch(
         times[:, :0] if pictures is None else pictures[:, count:],
         times[:, count:],
         torch.from_numpy(professional.astype(np.float32)),
+        torch.from_numpy(data.opinion[clips]),
         torch.from_numpy(classes),
         torch.from_numpy(hints),
         torch.from_numpy(np.stack([view.marks for view in views])),
@@ -187,7 +190,9 @@ def _view(
     if guides is not None:
         guides = guides.mirrored() if flipped else guides
         unknown = np.float16(np.nan if glanced or kept_back else 1)
-        guides = Guides(guides.maps[:, seen] * np.uint8(not kept_back), guides.flow * unknown)
+        guides = Guides(
+            guides.maps[:, seen] * np.uint8(not kept_back), guides.flow * unknown, guides.marks[:, seen]
+        )
     mapped = marks[seen] * np.float32(np.nan if kept_back else 1)
     return _View(
         pictures, times[picked], marks[picked[:count]], guides, times[seen], mapped, flipped, kept_back
@@ -201,7 +206,8 @@ def _guided(views: list[_View]) -> Guided | None:
         return None
     guides = joined(found)
     flow = torch.from_numpy(guides.flow).float()
-    return Guided(torch.from_numpy(guides.maps), flow, torch.from_numpy(np.stack([v.told_at for v in views])))
+    times, marks = np.stack([v.told_at for v in views]), torch.from_numpy(guides.marks).float()
+    return Guided(torch.from_numpy(guides.maps), flow, marks, torch.from_numpy(times))
 
 
 def varied(clip: NDArray[np.uint8], rng: np.random.Generator) -> tuple[NDArray[np.uint8], bool]:

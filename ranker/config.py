@@ -64,7 +64,8 @@ class TrainConfig:
     """How to train. The learning rate warms up over ``warmup`` of all steps and falls on a half cosine, once
     for all phases that look at guides alone, and once for those that look at pictures.
 
-    contrast_weight, class_weight, hint_weight: factors of L_q, L_c and L_h (0 leaves the loss out)
+    contrast_weight, class_weight, hint_weight, order_weight: factors of L_q, L_c, L_h and L_o (0 leaves the
+        loss out)
     dictionary, momentum, temperature: K, the momentum encoder's m and τ of L_q
     motion, moments: as in :class:`ModelConfig`; unmoved: share of the clips whose motion is kept from the
         heads, since a glance at a shot does not have it
@@ -89,6 +90,7 @@ class TrainConfig:
     class_weight: float = 1.0
     contrast_weight: float = 1.0
     hint_weight: float = 0.0
+    order_weight: float = 0.0
     dictionary: int = 6553
     momentum: float = 0.999
     temperature: float = 0.07
@@ -115,7 +117,7 @@ class TrainConfig:
 PAPER = TrainConfig(phases=(Phase(epochs=60, size=224, batch=128),))
 CPU = TrainConfig(
     phases=(
-        Phase(epochs=20, size=0, batch=64, share=0.33),
+        Phase(epochs=12, size=0, batch=64, share=0.4),
         Phase(epochs=4, size=64, frames=3, key_frames=1, batch=16),
         Phase(epochs=3, size=96, frames=3, key_frames=1, batch=16),
         Phase(epochs=2, size=128, frames=3, key_frames=1, batch=16),
@@ -125,7 +127,8 @@ CPU = TrainConfig(
     momentum=0.99,
     contrast_weight=0.25,
     hint_weight=6.0,
-    smoothing=0.05,
+    order_weight=1.0,
+    smoothing=0.02,
 )
 RECIPES = {"paper": PAPER, "cpu": CPU}
 #: The trainings of the ablation by the names of their folders: whether L_c and L_q count.

@@ -3,7 +3,8 @@
 A folder holds ``dataset.json`` (the words of the classes, picture size, frames a clip) and shards
 ``shard-00000.npy`` (uint8 [N, T, H, W, 3]) each with ``shard-00000.jsonl`` (one label a line). The
 label file is written last and is what makes a shard count, so writing can stop and go on anywhere. Where
-clips come with guides (:mod:`ranker.guides`), these lie beside: ``shard-00000.maps.npy`` and ``.flow.npy``.
+clips come with guides (:mod:`ranker.guides`), these lie beside: ``shard-00000.maps.npy``, ``.flow.npy`` and
+``.marks.npy``.
 Guides are had and learnt from far quicker than pictures, so a shard may have more of them: its last clips are
 *bare*, without frames.
 """
@@ -173,6 +174,7 @@ class ShardWriter:
                 guides = joined(found)
                 np.save(base.with_suffix(".maps.npy"), guides.maps)
                 np.save(base.with_suffix(".flow.npy"), guides.flow)
+                np.save(base.with_suffix(".marks.npy"), guides.marks)
             _replace(base.with_suffix(".jsonl"), lines.encode())
         except OSError as error:
             part.unlink(missing_ok=True)
@@ -237,12 +239,13 @@ class Dataset:
         """Guides of chosen clips, or of some of their frames; None in a set where not all have some."""
         if self.guided is None:
             return None
-        maps, flow = [], []
+        maps, flow, marks = [], [], []
         for shard, row in (self._where[i] for i in clips):
-            of = self.guided[shard]
-            maps.append(of.maps[row] if frames is None else of.maps[row, list(frames)])
+            of, some = self.guided[shard], slice(None) if frames is None else list(frames)
+            maps.append(of.maps[row][some])
             flow.append(of.flow[row])
-        return Guides(np.stack(maps), np.stack(flow))
+            marks.append(of.marks[row][some])
+        return Guides(np.stack(maps), np.stack(flow), np.stack(marks))
 
     def shards(self) -> Iterator[tuple[Path, NDArray[np.uint8]]]:
         """The files of the frames in order, and what is in each: uint8 [n, T, H, W, 3]."""
@@ -293,6 +296,14 @@ class Dataset:
         where that does not say; 0 for negatives."""
         told = [float(label.about.get("grade", 1.0)) if label.professional else 0.0 for label in self.labels]
         return np.array(told, np.float32)
+
+    @cached_property
+    def opinion(self) -> NDArray[np.float32]:
+        """How well clips are liked, float32 [N]: ``opinion`` of a label's ``about``, above 0 for positives
+        and no more than 0 for negatives; NaN where not known, and for doubtful ones."""
+        told = np.array([float(label.about.get("opinion", np.nan)) for label in self.labels], np.float32)
+        told = np.where(self.professional > 0.5, np.maximum(told, 1e-6), np.minimum(told, 0.0))
+        return np.where(self.doubtful, np.float32(np.nan), told).astype(np.float32)
 
     def split(self, share: float, seed: int) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
         """Indices to train on, and held out: whole groups in a random order until ``share`` is reached.
@@ -367,11 +378,12 @@ def _shards(folder: Path) -> list[Path]:
 
 def _guides(path: Path, clips: int, frames: int) -> Guides | None:
     """What lies beside a shard; the maps stay on disk until asked for."""
-    if not path.with_suffix(".maps.npy").exists():
+    if not all(path.with_suffix(f".{name}.npy").exists() for name in ("maps", "flow", "marks")):
         return None
     found = Guides(
         np.load(path.with_suffix(".maps.npy"), mmap_mode="r", allow_pickle=False),
         np.load(path.with_suffix(".flow.npy"), allow_pickle=False),
+        np.load(path.with_suffix(".marks.npy"), allow_pickle=False),
     )
     found.check(clips, frames, frames)
     return found

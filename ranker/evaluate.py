@@ -17,6 +17,9 @@ from .motion import motion
 
 #: Upper ends of the strengths that negatives are reported by.
 STRENGTHS = (0.25, 0.5, 0.75, 1.0)
+#: The kind of negatives that are not spoilt takes, as the paper's are, but others to choose from that were
+#: not chosen. They are counted apart.
+PASSED_OVER = "passed-over"
 _AT_ONCE = 32
 Floats = NDArray[np.floating]
 
@@ -27,7 +30,8 @@ def evaluate(
     """Measure on the given clips, at the full picture size, as :class:`Ranker` scores them.
 
     guided: with the guides of the clips, if they have some
-    ``auc``, ``auc_by_strength {upper end: auc}``, ``auc_by_kind`` (of negatives that say their kind),
+    ``auc`` and ``auc_by_strength {upper end: auc}`` against what was spoilt, ``auc_all`` against all
+    negatives, ``auc_by_kind`` of those that say their kind,
     ``accuracy {movement, scale, angle, professional}`` (classes over positives), ``clips``; a value is None
     where there is nothing to measure it on. Doubtful clips count for none but ``clips``.
     """
@@ -45,14 +49,16 @@ def evaluate(
     strength = np.array([data.labels[i].strength for i in clips])
     kind = np.array([str(data.labels[i].about.get("kind", "")) for i in clips], object)
     by_strength, low = {}, -np.inf
+    spoilt = sure & (kind != PASSED_OVER)
     for high in STRENGTHS:
-        chosen = sure & (label | ((strength > low) & (strength <= high)))
+        chosen = spoilt & (label | ((strength > low) & (strength <= high)))
         by_strength[f"{high:g}"] = auc(margin[chosen], label[chosen])
         low = high
     among = {k: sure & (label | (kind == k)) for k in sorted(set(kind[~label]) - {""})}
     return {
         "clips": len(clips),
-        "auc": auc(margin[sure], label[sure]),
+        "auc": auc(margin[spoilt], label[spoilt]),
+        "auc_all": auc(margin[sure], label[sure]),
         "auc_by_strength": by_strength,
         "auc_by_kind": {k: auc(margin[of], label[of]) for k, of in among.items()},
         "accuracy": {

@@ -13,27 +13,32 @@ from typing import NamedTuple
 import torch
 from torch import Tensor, nn
 
+from .composed import COMPOSED, EYES_INSIDE, SUMMED, composed, over_time
 from .guides import CHANNELS, FLOW, SIDE, Guides, pairs
 
-_FRAME, _PAIR, _MOVED = 256, 64, 256  # numbers that describe a frame, a pair of frames, all pairs
+_MAPS, _FRAME = 256, 128  # numbers that describe the maps of a frame, and all of a frame
+_PAIR, _MOVED = 64, 256  # and a pair of frames, all pairs
 _FINE = 20.0  # by what motion is multiplied, so that slow ones are seen
 
 
 class Guided(NamedTuple):
     """Guides as the network takes them.
 
-    maps: uint8 [B, T, SIDE, SIDE, channels]; flow: [B, pairs, FLOW, FLOW, 2]; times: [B, T] of the maps, 0..1
+    maps: uint8 [B, T, SIDE, SIDE, channels]; flow: [B, pairs, FLOW, FLOW, 2]; marks: [B, T, marks]
+    times: [B, T] of maps and marks, 0..1
     """
 
     maps: Tensor
     flow: Tensor
+    marks: Tensor
     times: Tensor
 
     @classmethod
     def of(cls, guides: Guides, times: Tensor) -> Guided:
         device = times.device
         maps = torch.from_numpy(guides.maps).to(device)
-        return cls(maps, torch.from_numpy(guides.flow).to(device).float(), times.expand(len(guides), -1))
+        flow, marks = (torch.from_numpy(told).to(device).float() for told in (guides.flow, guides.marks))
+        return cls(maps, flow, marks, times.expand(len(guides), -1))
 
     @property
     def known(self) -> Tensor:
@@ -42,7 +47,7 @@ class Guided(NamedTuple):
 
 
 class GuideNet(nn.Module):
-    """A description of every frame by its maps, and of the camera's motion by its flow.
+    """A description of every frame by its maps and marks, and of a shot by these and the camera's motion.
 
     frames: of a whole shot
     """
@@ -54,20 +59,30 @@ class GuideNet(nn.Module):
         for before, after in pairwise(widths):
             steps += [nn.Conv2d(before, after, 3, 2, 1), nn.GroupNorm(8, after), nn.ReLU()]
         last = widths[-1] * (SIDE // 2 ** (len(widths) - 1)) ** 2
-        self.maps = nn.Sequential(*steps, nn.Flatten(), nn.Linear(last, _FRAME), nn.ReLU())
+        self.maps = nn.Sequential(*steps, nn.Flatten(), nn.Linear(last, _MAPS), nn.ReLU())
+        self.evened = nn.BatchNorm1d(COMPOSED, affine=False)  # a tenth may be much for one number
+        self.marks = nn.Sequential(nn.Linear(_MAPS + COMPOSED, _FRAME), nn.ReLU())
         self.pairs = nn.Sequential(
             *(nn.Conv2d(4, 32, 3, 1, 1), nn.ReLU(), nn.Conv2d(32, 32, 3, 2, 1), nn.ReLU(), nn.Flatten()),
             *(nn.Linear(32 * (FLOW // 2) ** 2, _PAIR), nn.ReLU()),
         )
         self.moved = nn.Sequential(nn.Linear(_PAIR * len(pairs(frames)), _MOVED), nn.ReLU(), nn.Dropout(0.2))
-        self.described, self.motion = _FRAME, _MOVED
+        self.frame, self.shot = _FRAME + COMPOSED, SUMMED * (_FRAME + COMPOSED) + _MOVED
 
     def forward(self, seen: Guided) -> tuple[Tensor, Tensor]:
-        """Descriptions of frames float32 [B, T, described], and of motion [B, motion]; 0 where not known."""
+        """Descriptions of frames float32 [B, T, frame], and of shots [B, shot]."""
         batch, count = seen.maps.shape[:2]
         maps = seen.maps.flatten(0, 1).movedim(-1, 1).float() / 255
-        frames = self.maps(maps).view(batch, count, self.described)
+        with torch.autocast(maps.device.type, enabled=False):
+            marks = composed(seen.marks, seen.maps[..., CHANNELS.index("nearness")])
+            inside = marks[..., EYES_INSIDE]
+            marks = self.evened(marks.flatten(0, 1)).view(batch, count, COMPOSED).clamp(-5, 5)
+        both = torch.cat([self.maps(maps).view(batch, count, _MAPS), marks], 2)
+        frames = torch.cat([self.marks(both), marks], 2)
         flow = seen.flow.flatten(0, 1).movedim(-1, 1).float().nan_to_num()
         fine = torch.asinh(flow * _FINE) / 3
         moved = self.pairs(torch.cat([flow, fine], 1)).view(batch, _PAIR * seen.flow.shape[1])
-        return frames, self.moved(moved) * seen.flow.isfinite().flatten(1).all(1, keepdim=True)
+        moved = self.moved(moved) * seen.flow.isfinite().flatten(1).all(1, keepdim=True)
+        with torch.autocast(maps.device.type, enabled=False):
+            summed = over_time(frames.float(), seen.times, inside)
+        return frames.float(), torch.cat([summed, moved.float()], 1)

@@ -1,7 +1,8 @@
 """What whoever draws a shot can tell of its pictures beside their colours: the guides.
 
-A renderer knows of every pixel whom it shows, how far away that is and how the line of sight rises, and how
-the camera makes the picture move; none of that has to be learnt from colours. Assumes nothing of who draws.
+A renderer knows of every pixel whom it shows, how far away that is and how the line of sight rises, how
+the camera makes the picture move, and where in the picture the subject's head, waist and feet are, in it or
+out of it; none of that has to be learnt from colours. Assumes nothing of who draws.
 Real clips have no guides, and a network that was taught with and without them judges those by colour alone.
 Plain numpy: whoever only draws need not load a network.
 """
@@ -20,6 +21,33 @@ SIDE = 32  # cells along a map
 CHANNELS = ("subject", "head", "face", "others", "nothing", "nearness", "rise")
 FLOW = 8  # cells along a field of the camera's motion
 _APART = 3  # frames between those of the longer pairs
+NEAREST, FARTHEST = 0.25, 64.0  # metres that nearness of 255 and of 1 stand for
+#: Points that marks are of: the subject's, and two of what else matters, as who is spoken to.
+POINTS = (
+    "crown",
+    "eyes",
+    "chin",
+    "pocket",
+    "waist",
+    "knees",
+    "feet",
+    "hand_l",
+    "hand_r",
+    "other_1",
+    "other_2",
+)
+#: Marks of a frame. Of each point how far it is to the right and to the top, in half frames from the middle,
+#: no further than 3, and by how much nearer than the point (log) what is seen in its place is. Where the
+#: face points, to the right, up and away. Logarithms: of the focal length (mm) by the distance of the waist,
+#: of that distance (metres) and of the focal length. Metres of the camera above the eyes; radians it leans to
+#: the right; the logarithm of the seconds the shot lasts. In the mirror those of ``right`` change their sign.
+MARKS = (
+    *(f"{what}{point}" for point in POINTS for what in ("right_", "up_", "covered_")),
+    *("right_face", "up_face", "away_face", "size", "distance", "lens", "over", "right_roll", "seconds"),
+)
+_TURNED = np.array([name.startswith("right") for name in MARKS])
+_HANDS = {"l": "r", "r": "l"}  # a left hand in the mirror is a right one
+_SWAPPED = [MARKS.index(n[:-1] + _HANDS[n[-1]] if n.endswith(("_l", "_r")) else n) for n in MARKS]
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,35 +58,43 @@ class Guides:
     flow: float16 [P, pairs, FLOW, FLOW, 2], how far what is seen in a cell of the first frame of a pair has
         gone in the second by the camera's motion alone, in half frames to the right and down; NaN where not
         known, as when only some of the frames were drawn
+    marks: float16 [P, T, len(MARKS)]; NaN for what there is not: what lies behind the camera has no place,
+        what is out of the frame is not covered by anything
     """
 
     maps: NDArray[np.uint8]
     flow: NDArray[np.float16]
+    marks: NDArray[np.float16]
 
     def __len__(self) -> int:
         return len(self.maps)
 
     def __getitem__(self, rows: slice | NDArray[np.integer]) -> Guides:
-        return Guides(self.maps[rows], self.flow[rows])
+        return Guides(self.maps[rows], self.flow[rows], self.marks[rows])
 
     def mirrored(self) -> Guides:
         """Of the same shots in the mirror."""
         flow = self.flow[:, :, :, ::-1] * np.array((-1, 1), np.float16)
-        return Guides(self.maps[:, :, :, ::-1], flow)
+        marks = np.where(_TURNED, -self.marks, self.marks)[..., _SWAPPED]
+        return Guides(self.maps[:, :, :, ::-1], flow, marks)
 
     def check(self, shots: int, frames: int, whole: int) -> None:
         """Raises ValueError where these are not of so many shots and frames, of ``whole`` that they have."""
         maps = (shots, frames, SIDE, SIDE, len(CHANNELS))
         flow = (shots, len(pairs(whole)), FLOW, FLOW, 2)
-        if self.maps.shape != maps or self.maps.dtype != np.uint8 or self.flow.shape != flow:
-            raise ValueError(
-                f"guides: expected {maps} and {flow}, got {self.maps.shape} and {self.flow.shape}"
-            )
+        marks = (shots, frames, len(MARKS))
+        found = self.maps.shape, self.flow.shape, self.marks.shape
+        if found != (maps, flow, marks) or self.maps.dtype != np.uint8:
+            expected = ", ".join(map(str, (maps, flow, marks)))
+            raise ValueError(f"guides: expected {expected}, got {', '.join(map(str, found))}")
 
 
 def joined(parts: list[Guides]) -> Guides:
     """Guides of several sets of shots, one after the other."""
-    return Guides(np.concatenate([g.maps for g in parts]), np.concatenate([g.flow for g in parts]))
+    maps, flow, marks = (
+        np.concatenate(found) for found in zip(*((g.maps, g.flow, g.marks) for g in parts), strict=True)
+    )
+    return Guides(maps, flow, marks)
 
 
 def pairs(frames: int) -> list[tuple[int, int]]:

@@ -1,4 +1,5 @@
-"""The losses: L = L_b + L_c + L_q of the paper's section 3.3, and L_h, of what is known in numbers."""
+"""The losses: L = L_b + L_c + L_q of the paper's section 3.3, L_h, of what is known in numbers,
+and L_o, of what is liked better."""
 
 from __future__ import annotations
 
@@ -30,6 +31,18 @@ def class_loss(logits: tuple[Tensor, ...], labels: tuple[Tensor, ...], smoothing
         if known.any():
             total = total + functional.cross_entropy(scores[known], label[known], label_smoothing=smoothing)
     return total
+
+
+def order_loss(logit: Tensor, opinion: Tensor, least: float = 0.03) -> Tensor:
+    """L_o = −log σ(s_i − s_j), the mean over pairs of [B] of which i is good and liked better than j by
+    ``least`` (RankNet, Burges et al. 2005).
+
+    opinion: above 0 for good ones, the higher the better; NaN for what is not known
+    """
+    pairs = (opinion[:, None] - opinion[None] > least) & (opinion[:, None] > 0)
+    if not pairs.any():
+        return logit.new_zeros(())
+    return functional.softplus(logit[None] - logit[:, None])[pairs].mean()
 
 
 def contrast_loss(

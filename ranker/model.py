@@ -19,6 +19,7 @@ import torch
 from torch import Tensor, nn
 from torch.nn import functional
 
+from .composed import fuse
 from .config import ModelConfig
 from .guided import Guided, GuideNet
 from .guides import pairs
@@ -53,7 +54,7 @@ class Output(NamedTuple):
 
 
 class _Mapped(NamedTuple):
-    """What is made of guides: of frames [B, T, described], of shots [B, guides]; whether there were any [B,
+    """What is made of guides: of frames [B, T, frame], of shots [B, guides]; whether there were any [B,
     1]."""
 
     frames: Tensor
@@ -124,15 +125,15 @@ class ShotRanker(nn.Module):
         self.guided: GuideNet | None = None
         if config.guides:
             self.guided = GuideNet(config.frames)
-            before, wide = 5 * self.guided.described + self.guided.motion, 2 * config.guides
-            gathered = nn.Sequential(nn.Linear(before, wide), nn.ReLU(), nn.Dropout(0.2))
+            wide = 2 * config.guides
+            gathered = nn.Sequential(nn.Linear(self.guided.shot, wide), nn.ReLU(), nn.Dropout(0.2))
             last = nn.Sequential(nn.Linear(wide, config.guides), nn.ReLU(), nn.Dropout(0.2))
             self.gathered = nn.Sequential(*gathered, *last)
             self.judged = nn.Linear(config.guides, 1 + sum(sizes))
             if config.measures:
                 self.reader_guided = nn.Linear(config.guides, config.measures)
             if config.marks:
-                self.marker_guided = nn.Linear(self.guided.described, config.marks)
+                self.marker_guided = nn.Linear(self.guided.frame, config.marks)
 
     def forward(
         self,
@@ -207,11 +208,8 @@ class ShotRanker(nn.Module):
         if self.guided is None or guides is None:
             return None
         with torch.autocast(guides.maps.device.type, torch.bfloat16, enabled=self.training):
-            frames, motion = (part.float() for part in self.guided(guides))
-        # what is amiss only for a time is seen by extremes
-        over_time = [fuse(frames, guides.times), frames.amin(1), frames.amax(1)]
-        shot = self.gathered(torch.cat([*over_time, motion], 1))
-        return _Mapped(frames, shot, guides.known.float().unsqueeze(1))
+            frames, shot = self.guided(guides)
+        return _Mapped(frames, self.gathered(shot), guides.known.float().unsqueeze(1))
 
     def _seen(self, moved: Tensor | None) -> Tensor | None:
         """What is made of the motion of shots; zeros where it is not known."""
@@ -219,19 +217,6 @@ class ShotRanker(nn.Module):
             return None
         known = moved.isfinite().flatten(1).all(1, keepdim=True)
         return self.motion(moved.nan_to_num().flatten(1)) * known
-
-
-def fuse(features: Tensor, times: Tensor) -> Tensor:
-    """Average, least-squares slope and spread over time: [B, T, D] and [B, T] -> [B, 3 D].
-
-    All three mean the same for any subset of a shot's frames. One frame has no slope and no spread.
-    """
-    average = features.mean(1)
-    offset = (times - times.mean(1, keepdim=True)).unsqueeze(2)
-    change = features - average.unsqueeze(1)
-    slope = (offset * change).sum(1) / offset.square().sum(1).clamp_min(1e-6)
-    spread = (change.square().mean(1) + 1e-6).sqrt()
-    return torch.cat([average, slope, spread], 1)
 
 
 def normalised(frames: Tensor) -> Tensor:

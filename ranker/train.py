@@ -31,7 +31,7 @@ from .evaluate import agreement_with_fp32, evaluate, mean
 from .guided import Guided
 from .infer import Ranker, fold_batch_norm
 from .int8 import Ranges, measured_ranges
-from .losses import binary_loss, class_loss, contrast_loss, hint_loss
+from .losses import binary_loss, class_loss, contrast_loss, hint_loss, order_loss
 from .model import OF_GUIDES, ShotRanker, normalised
 from .motion import motions
 from .weights import load_model, save_weights
@@ -115,7 +115,7 @@ def train(
             phase = schedule[epoch]
             torch.manual_seed(config.seed + 1 + epoch)  # what is dropped out hangs on the epoch alone
             model.train()
-            sums = np.zeros(5)
+            sums = np.zeros(6)
             alike = [n for n, other in enumerate(schedule) if (other.size > 0) == (phase.size > 0)]
             before, total = (sum(lengths[n] for n in alike if n < m) for m in (epoch, len(schedule)))
             for number, batch in enumerate(batches(data, pools[epoch], phase, config, epoch, moved)):
@@ -125,7 +125,7 @@ def train(
 
                 parts = _losses(model, keys, dictionary, batch, config, device)
                 loss = parts[0] + config.class_weight * parts[1] + config.contrast_weight * parts[2]
-                loss = loss + config.hint_weight * parts[3]
+                loss = loss + config.hint_weight * parts[3] + config.order_weight * parts[4]
                 optimizer.zero_grad(set_to_none=True)
                 loss.backward()
                 nn.utils.clip_grad_norm_(model.parameters(), 5.0)
@@ -136,7 +136,7 @@ def train(
                 step += 1
                 sums += [float(loss.detach()), *(float(p.detach()) for p in parts)]
 
-            names = ("loss", "binary", "class", "contrast", "hint")
+            names = ("loss", "binary", "class", "contrast", "hint", "order")
             line: dict[str, Any] = {
                 "epoch": epoch + 1,
                 "epochs": len(schedule),
@@ -281,8 +281,8 @@ def _losses(
     batch: Batch,
     config: TrainConfig,
     device: torch.device,
-) -> tuple[Tensor, Tensor, Tensor, Tensor]:
-    """L_b, L_c, L_q and L_h of a batch; its keys go into the dictionary afterwards."""
+) -> tuple[Tensor, Tensor, Tensor, Tensor, Tensor]:
+    """L_b, L_c, L_q, L_h and L_o of a batch; its keys go into the dictionary afterwards."""
     with torch.autocast(device.type, torch.bfloat16, enabled=config.autocast):
         out = model(*_seen(batch, device))
     binary = binary_loss(out.logit, batch.professional.to(device), config.smoothing)
@@ -295,15 +295,18 @@ def _losses(
             hint = hint + hint_loss(out.marked, batch.marks.to(device))
         if out.mapped.shape[2]:
             hint = hint + hint_loss(out.mapped, batch.mapped.to(device))
+    order = torch.zeros((), device=device)
+    if config.order_weight:
+        order = order_loss(out.logit, batch.opinion.to(device))
     if config.contrast_weight == 0 or batch.query is None:
-        return binary, classes, torch.zeros((), device=device), hint
+        return binary, classes, torch.zeros((), device=device), hint, order
     with torch.no_grad(), torch.autocast(device.type, torch.bfloat16, enabled=config.autocast):
         key = keys(normalised(batch.key.to(device)), batch.key_times.to(device)).contrast
     clips = batch.clips.to(device)
     others = dictionary.vectors.clone()
     contrast = contrast_loss(out.contrast, key, others, config.temperature, dictionary.same(clips))
     dictionary.push(key, clips)
-    return binary, classes, contrast, hint
+    return binary, classes, contrast, hint, order
 
 
 def _optimizer(model: ShotRanker, config: TrainConfig) -> torch.optim.Optimizer:

@@ -2,16 +2,21 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from proposed_shots import proposed
 
-from ranker.guides import CHANNELS, FLOW, SIDE, pairs
-from vdsl.cinema.track import camera_axes, project
+from ranker.guides import CHANNELS, FLOW, MARKS, SIDE, pairs
+from runtime.body.skeleton import JOINT
+from vdsl.cinema.track import CameraTrack, camera_axes, look_at_rotation, project
 from vdsl.pipeline.acts import Act
 from vdsl.pipeline.filming import SEGMENTS, Camerawork, segment_frames
-from vdsl.pipeline.guides import objects_of, roles_of
-from vdsl.propose.types import ProposalGrid
+from vdsl.pipeline.guides import About, about_of, roles_of
+from vdsl.pipeline.hints import frame_hints_of
+from vdsl.propose.subjects import subject_of
+from vdsl.propose.types import CameraProposal, ProposalGrid, StoryProposal
 
 STORY = """storyboard "t"
 proposals 16
@@ -38,7 +43,7 @@ def test_motion_is_where_what_is_seen_is_seen_next(words: str, camerawork: Camer
     act, grid = filmed(words)
     camera = grid.cameras[0]
     story = next(s for s in grid.story if s.index == camera.story)
-    about = [objects_of(act.line.shots[0], grid, act.filming, act.staged)]
+    about = [about_of(act.line.shots[0], grid, act.filming, act.staged)]
     seen = camerawork.judge_frames(act.staged, "board", grid.story, (camera,), about=about)
     assert seen.guides is not None
     flow = seen.guides.flow[0].astype(float)
@@ -75,7 +80,7 @@ def test_motion_is_where_what_is_seen_is_seen_next(words: str, camerawork: Camer
 
 def test_a_still_camera_has_no_motion_and_a_glance_none_that_is_known(camerawork: Camerawork) -> None:
     act, grid = filmed("static full eye-level")
-    about = [objects_of(act.line.shots[0], grid, act.filming, act.staged)] * 2
+    about = [about_of(act.line.shots[0], grid, act.filming, act.staged)] * 2
     seen = camerawork.judge_frames(act.staged, "board", grid.story, grid.cameras[:2], about=about)
     assert seen.guides is not None
     assert np.abs(seen.guides.flow).max() < 1e-3
@@ -87,19 +92,57 @@ def test_a_still_camera_has_no_motion_and_a_glance_none_that_is_known(camerawork
     )
     assert glance.guides is not None
     np.testing.assert_array_equal(glance.guides.maps, seen.guides.maps[:, [1, 6]])
+    np.testing.assert_array_equal(glance.guides.marks, seen.guides.marks[:, [1, 6]])
     assert np.isnan(glance.guides.flow).all()
 
 
 def test_whom_a_shot_is_about(camerawork: Camerawork) -> None:
     act, grid = filmed("static medium eye-level two-shot")
     ids = act.staged.object_ids
-    assert set(objects_of(act.line.shots[0], grid, act.filming, act.staged)) == set(ids.values())
+    assert set(about_of(act.line.shots[0], grid, act.filming, act.staged).objects) == set(ids.values())
     act, grid = filmed("static medium eye-level")
-    (anna,) = objects_of(act.line.shots[0], grid, act.filming, act.staged)
+    (anna,) = about_of(act.line.shots[0], grid, act.filming, act.staged).objects
     assert anna == act.staged.object_ids["anna"]
-    roles = roles_of(act.staged, [(anna,), ()])
+    roles = roles_of(act.staged, [About((anna,), {}), About((), {})])
     assert roles[:, [anna, act.staged.object_ids["ben"]]].tolist() == [[1, 2], [2, 2]]
     assert (roles[:, : len(act.staged.world.objects)] == 0).all()
     act, grid = filmed("static medium eye-level", "focus counter")
-    (counter,) = objects_of(act.line.shots[0], grid, act.filming, act.staged)
+    (counter,) = about_of(act.line.shots[0], grid, act.filming, act.staged).objects
     assert act.staged.world.objects[counter].path[-1] == "counter"
+
+
+def test_marks_are_where_the_subject_is_and_what_is_before_it(camerawork: Camerawork) -> None:
+    act, grid = filmed("static medium-close-up eye-level")
+    shot, camera = act.line.shots[0], grid.cameras[0]
+    story = next(s for s in grid.story if s.index == camera.story)
+    subject, at = subject_of(shot, story, act.filming), segment_frames(story.frames)
+    about = about_of(shot, grid, act.filming, act.staged)
+    seen = camerawork.judge_frames(act.staged, "board", grid.story, (camera,), about=[about])
+    assert seen.guides is not None
+    told = {name: seen.guides.marks[0, :, k].astype(float) for k, name in enumerate(MARKS)}
+    known = frame_hints_of(camera, subject, at)
+    for mark, hint in (("right_eyes", "right_eyes"), ("up_crown", "crown"), ("right_face", "right_face")):
+        np.testing.assert_allclose(told[mark], known[hint], atol=3e-3)
+    for mark, hint in (("size", "size"), ("lens", "lens"), ("over", "over"), ("right_roll", "right_roll")):
+        np.testing.assert_allclose(told[mark], known[hint], atol=3e-3)
+    np.testing.assert_allclose(told["seconds"], np.log(story.frames / act.filming.fps), atol=2e-3)
+    assert np.abs(told["covered_eyes"]).max() < 0.3  # nothing before her face but its front
+    assert np.isnan(told["covered_feet"]).all()  # they are not in the picture
+    assert np.isnan(told["right_other_2"]).all()
+
+    behind = replace(camera, track=_from_behind_ben(camera, story, at))
+    hidden = camerawork.judge_frames(act.staged, "board", grid.story, (behind,), about=[about])
+    assert hidden.guides is not None
+    covered = hidden.guides.marks[0, :, MARKS.index("covered_eyes")].astype(float)
+    assert np.nanmin(covered) > 0.5
+
+
+def _from_behind_ben(camera: CameraProposal, story: StoryProposal, at: np.ndarray) -> CameraTrack:
+    """A look at anna's eyes with ben's head right before it."""
+    anna, ben = (
+        story.performances[name].world_from_joint[:, JOINT["head"], :3, 3].astype(float)
+        for name in ("anna", "ben")
+    )
+    away = (ben - anna) / np.linalg.norm(ben - anna, axis=1, keepdims=True)
+    place = ben + 0.5 * away
+    return replace(camera.track, position=place, look_at=anna, rotation=look_at_rotation(place, anna))

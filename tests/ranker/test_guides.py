@@ -11,11 +11,12 @@ import torch
 from ranker_clips import FRAMES, SIZE, TINY, WORDS, clip, model_config
 
 from ranker.batches import batches
+from ranker.composed import COMPOSED, EYES_INSIDE, SUMMED, composed, over_time
 from ranker.config import Phase
 from ranker.data import Dataset, ShardWriter
 from ranker.errors import RankerError
 from ranker.guided import Guided
-from ranker.guides import CHANNELS, FLOW, SIDE, Guides, joined, pairs
+from ranker.guides import CHANNELS, FLOW, MARKS, POINTS, SIDE, Guides, joined, pairs
 from ranker.infer import Ranker
 from ranker.model import ShotRanker, frame_times, normalised
 from ranker.train import train
@@ -29,7 +30,9 @@ def guides_of(rng: np.random.Generator, good: bool, movement: int) -> Guides:
     maps[:, :, top : top + 8, 10:16, 0] = 255
     flow = rng.normal(0, 0.003, (1, len(pairs(FRAMES)), FLOW, FLOW, 2))
     flow[..., 0] += (0, 0.2, -0.2)[movement]
-    return Guides(maps, flow.astype(np.float16))
+    marks = rng.normal(0, 0.1, (1, FRAMES, len(MARKS))).astype(np.float16)
+    marks[..., MARKS.index("right_other_2")] = np.nan
+    return Guides(maps, flow.astype(np.float16), marks)
 
 
 def write_guided(folder: Path, count: int, bare: int = 0) -> None:
@@ -40,7 +43,7 @@ def write_guided(folder: Path, count: int, bare: int = 0) -> None:
             good, m = i % 2 == 0, i // 2 % 3
             pictures = clip(rng, True, 0, 0, 0)
             words = WORDS.movements[m], WORDS.scales[0], WORDS.angles[0]
-            about = {"grade": 0.25} if good else {}
+            about = {"grade": 0.25, "opinion": 0.8} if good else {"opinion": 0.4, "doubtful": i == 3}
             guides = guides_of(rng, good, m) if i >= bare else None
             writer.add(pictures, good, *words, f"group-{i % 5}", 1.0 - good, "", about, guides)
 
@@ -55,7 +58,9 @@ def test_guides_lie_beside_the_frames_of_their_clips(tmp_path: Path) -> None:
     some = data.guides(np.array([39]), [2, 0])
     assert some is not None
     np.testing.assert_array_equal(some.maps[0], found.maps[0][[2, 0]])
+    np.testing.assert_array_equal(some.marks[0], found.marks[0][[2, 0]])
     np.testing.assert_array_equal(data.grade[:4], [0.25, 0, 0.25, 0])
+    np.testing.assert_array_equal(data.opinion[:4], np.float32([0.8, 0, 0.8, np.nan]))
 
 
 def test_a_set_in_which_some_have_none_is_taught_without(tmp_path: Path) -> None:
@@ -72,6 +77,12 @@ def test_a_set_in_which_some_have_none_is_taught_without(tmp_path: Path) -> None
 
 def test_damaged_guides_are_told(tmp_path: Path) -> None:
     write_guided(tmp_path, 16)
+    kept = np.load(tmp_path / "shard-00000.marks.npy")
+    np.save(tmp_path / "shard-00000.marks.npy", kept[..., 1:])
+    with pytest.raises(RankerError, match="damaged"):
+        Dataset(tmp_path)
+    np.save(tmp_path / "shard-00000.marks.npy", kept)
+    Dataset(tmp_path)
     np.save(tmp_path / "shard-00000.flow.npy", np.zeros((3, 1, FLOW, FLOW, 2), np.float16))
     with pytest.raises(RankerError, match="damaged"):
         Dataset(tmp_path)
@@ -85,6 +96,62 @@ def test_the_mirror_turns_maps_and_motion() -> None:
     np.testing.assert_array_equal(mirrored.flow[:, :, :, 0, 0], -guides.flow[:, :, :, -1, 0])
     np.testing.assert_array_equal(mirrored.flow[:, :, :, 0, 1], guides.flow[:, :, :, -1, 1])
     np.testing.assert_array_equal(mirrored.mirrored().maps, guides.maps)
+    own, seen = ({n: g.marks[..., k] for k, n in enumerate(MARKS)} for g in (guides, mirrored))
+    np.testing.assert_array_equal(seen["right_eyes"], -own["right_eyes"])
+    np.testing.assert_array_equal(seen["right_face"], -own["right_face"])
+    np.testing.assert_array_equal(seen["up_eyes"], own["up_eyes"])
+    np.testing.assert_array_equal(seen["right_hand_l"], -own["right_hand_r"])  # the other hand
+    np.testing.assert_array_equal(seen["covered_hand_r"], own["covered_hand_l"])
+    np.testing.assert_array_equal(mirrored.mirrored().marks, guides.marks)
+
+
+def test_composition_is_what_marks_say() -> None:
+    marks = torch.zeros(1, 3, len(MARKS))
+    at = {name: k for k, name in enumerate(MARKS)}
+    marks[..., at["right_eyes"]] = torch.tensor([0.5, -0.4, 1.5])
+    marks[..., at["up_eyes"]] = 1 / 3
+    marks[..., at["up_crown"]] = 1.2
+    marks[..., at["right_face"]] = -0.8
+    marks[..., at["right_feet"]] = torch.nan
+    marks[..., at["covered_eyes"]] = torch.tensor([0.0, 1.0, torch.nan])
+    marks[..., at["distance"]] = np.log(4.0)
+    near = torch.zeros(1, 3, SIDE, SIDE, dtype=torch.uint8)
+    near[:, 1] = 1 + round(254 * np.log(64 / 1.0) / np.log(64 / 0.25))  # a metre away, all over the frame
+    found = composed(marks, near)
+    assert found.shape == (1, 3, COMPOSED)
+    assert found.isfinite().all()
+    here = found[0, :, EYES_INSIDE]
+    assert here[0] > 0.99
+    assert here[1] > 0.99
+    assert here[2] < 0.01
+    covered = found[0, :, EYES_INSIDE - len(POINTS)]
+    assert covered[0] < 0.05
+    assert covered[1] > 0.95
+    there, begin = found[0, 0, len(MARKS) :], len(MARKS) + len(POINTS)
+    assert there[: len(POINTS)].tolist() == [float(name != "feet") for name in POINTS]
+    lead, thirds, aside, above = found[0, :, begin : begin + 4].T
+    torch.testing.assert_close(lead, torch.tensor([0.4, -0.32, 1.2]))
+    assert thirds.abs().max() < 1e-6
+    torch.testing.assert_close(aside, torch.tensor([0.5, 0.4, 1.5]))
+    torch.testing.assert_close(above, torch.full((3,), 0.2))
+    looks = found[0, :, begin + 9 : begin + 20]  # and the shares that are nearer
+    assert looks[0].max() < 0.01
+    assert looks[1].min() > 0.95
+
+
+def test_what_is_summed_up_over_a_shot() -> None:
+    times = torch.linspace(0, 1, 8).expand(1, -1)
+    features = torch.arange(8.0).view(1, 8, 1)
+    found = over_time(features, times, (times > 0.7).float())[0]
+    assert found.shape == (SUMMED,)
+    average, slope, _, least, most, quarter, half, last, second, inside = found.tolist()
+    assert [average, slope, least, most] == pytest.approx([3.5, 7.0, 0.0, 7.0], abs=1e-4)
+    assert quarter < 1 < half < 2.5
+    assert last == pytest.approx(7 - quarter, abs=0.05)
+    assert second == pytest.approx(7 - half, abs=0.05)
+    assert inside == pytest.approx(6.0, abs=0.05)
+    never = over_time(features, times, torch.zeros(1, 8))[0, -1]
+    assert float(never) == 0.0
 
 
 def test_a_shot_without_guides_is_judged_as_by_a_network_without() -> None:
@@ -98,7 +165,7 @@ def test_a_shot_without_guides_is_judged_as_by_a_network_without() -> None:
     pictures = normalised(torch.from_numpy(np.stack([clip(rng, True, 1, 0, 0), clip(rng, False, 2, 1, 1)])))
     times = frame_times(config).expand(2, -1)
     guides = joined([guides_of(rng, True, 1), guides_of(rng, False, 0)])
-    kept_back = Guides(np.zeros_like(guides.maps), np.full_like(guides.flow, np.nan))
+    kept_back = Guides(np.zeros_like(guides.maps), np.full_like(guides.flow, np.nan), guides.marks)
     with torch.inference_mode():
         plain, none = without(pictures, times), model(pictures, times)
         empty = model(pictures, times, None, Guided.of(kept_back, times[0]))
@@ -124,9 +191,8 @@ def test_guides_are_learnt_from_and_a_shot_is_judged_by_its_own(tmp_path: Path) 
     one = ranker.score(frames[3:4], guides[3:4])
     np.testing.assert_array_equal(one.margin, scores.margin[3:4])
     at = (0, 2)
-    glanced = ranker.glance(
-        frames[:, list(at)], at, Guides(guides.maps[:, list(at)], np.full_like(guides.flow, np.nan))
-    )
+    some = guides.maps[:, list(at)], np.full_like(guides.flow, np.nan), guides.marks[:, list(at)]
+    glanced = ranker.glance(frames[:, list(at)], at, Guides(*some))
     assert glanced.margin[::2].min() > glanced.margin[1::2].max()
     with pytest.raises(ValueError, match="guides: expected"):
         ranker.score(frames, guides[:5])
@@ -141,6 +207,27 @@ def test_a_good_clip_that_is_only_just_good_is_taught_as_less(tmp_path: Path) ->
     assert batch.query is None
     by_clip = dict(zip(batch.clips.tolist(), batch.professional.tolist(), strict=True))
     assert [by_clip[i] for i in (0, 1, 2)] == pytest.approx([1 - 0.4 * 0.75, 0, 1 - 0.4 * 0.75])
+
+
+def test_what_is_liked_better_is_taught_to_come_first(tmp_path: Path) -> None:
+    """Good clips that differ in what is said of them alone: the labels put them all on one level."""
+    rng = np.random.default_rng(6)
+    with ShardWriter(tmp_path / "data", WORDS, (SIZE, SIZE), FRAMES, shard=16) as writer:
+        for i in range(64):
+            much = i % 4 == 0
+            about = {"opinion": 0.95 if much else 0.75}
+            guides = guides_of(rng, much, 0)
+            writer.add(clip(rng, True, 0, 0, 0), True, None, None, None, f"g{i % 5}", 0.0, "", about, guides)
+    phases = (Phase(30, 0, batch=16), replace(TINY.phases[0], epochs=1))
+    config = replace(TINY, phases=phases, unguided=0.0, guides=32, motion=0, graded=0.0, smoothing=0.02)
+    frames = np.stack([clip(rng, True, 0, 0, 0) for _ in range(6)])
+    guides = joined([guides_of(rng, k % 2 == 0, 0) for k in range(6)])
+    apart = []
+    for weight in (0.0, 2.0):
+        train(tmp_path / "data", tmp_path / f"{weight}", replace(config, order_weight=weight))
+        margin = Ranker.load(tmp_path / f"{weight}" / "weights", "cpu").score(frames, guides).margin
+        apart.append(margin[::2].min() - margin[1::2].max())
+    assert apart[1] > max(1.0, apart[0] + 0.5)
 
 
 def test_clips_without_frames_are_learnt_from_by_their_guides_alone(tmp_path: Path) -> None:

@@ -73,6 +73,26 @@ def test_a_ranker_is_measured_on_whole_sets(tmp_path: Path) -> None:
     assert "L_b + L_q" in table({"b+q": found | {"diversity": apart}})
 
 
+def test_what_was_passed_over_counts_apart_from_what_was_spoilt(tmp_path: Path) -> None:
+    torch.manual_seed(2)
+    model = ShotRanker(model_config()).eval()
+    write_clips(tmp_path, 24)
+    plain = evaluate(Ranker(model, "cpu"), Dataset(tmp_path), np.arange(24))
+    assert plain["auc"] == plain["auc_all"]
+    told = []
+    for path in sorted(tmp_path.glob("shard-*.jsonl")):
+        lines = [json.loads(line) for line in path.read_text("utf-8").splitlines()]
+        for k, line in enumerate(line for line in lines if not line["professional"]):
+            line["about"] = line["about"] | {"kind": "passed-over" if k % 2 else "perturbed"}
+        told += lines
+        path.write_text("".join(json.dumps(line) + "\n" for line in lines), "utf-8")
+    assert sum(not line["professional"] for line in told) > 4
+    found = evaluate(Ranker(model, "cpu"), Dataset(tmp_path), np.arange(24))
+    assert found["auc"] == found["auc_by_kind"]["perturbed"]
+    assert found["auc_all"] == plain["auc"]
+    assert set(found["auc_by_kind"]) == {"passed-over", "perturbed"}
+
+
 def test_curves_are_drawn_of_every_epoch_once(tmp_path: Path) -> None:
     lines = [
         {"epoch": e, "epochs": 3, "loss": 2.0 / n, "binary": 0.5, "class": 1.0, "contrast": None,

@@ -55,7 +55,8 @@ def _print(found: dict[str, Any]) -> None:
         return "–" if value is None else f"{value:.3f}"
 
     print(f"clips for testing        {found['clips']}")
-    print(f"AUC                      {said(found['auc'])}")
+    print(f"AUC, against spoilt ones {said(found['auc'])}")
+    print(f"AUC, against all         {said(found['auc_all'])}")
     for what in ("strength", "kind"):
         for name, value in found[f"auc_by_{what}"].items():
             print(f"  {'to ' if what == 'strength' else ''}{name:<20} {said(value)}")
@@ -63,7 +64,9 @@ def _print(found: dict[str, Any]) -> None:
         print(f"accuracy, {name:<14} {said(value)}")
     print(f"Spearman with float32    {said(found['spearman_fp32'])}")
     print(f"picks among proposals    {found['picks']} among {found['proposals']}")
-    print(f"  in the top 10 %        {said(found['picks_in_top_10pct'])}")
-    print(f"  median place, %        {said(found['picks_median_rank_pct'])}")
+    for name, of in (("", found), (", as compiled", found.get("with_prior"))):
+        if of is not None:
+            print(f"  {'in the top 10 %' + name:<30} {said(of['picks_in_top_10pct'])}")
+            print(f"  {'median place, %' + name:<30} {said(of['picks_median_rank_pct'])}")
     for name, hits in found["agreement"].items():
         print(f"  {name:<20} top 1 {hits['top_1']:.3f}   top 5 {hits['top_5']:.3f}")

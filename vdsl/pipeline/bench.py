@@ -26,7 +26,7 @@ from ..propose.story import propose
 from ..propose.types import CameraProposal, ProposalGrid
 from .compile import Act, stage_acts
 from .filming import SEGMENTS, Camerawork, Seen
-from .guides import objects_of
+from .guides import about_of
 from .judging import DiscriminatorJudge
 from .script import load_storyboard
 
@@ -109,7 +109,7 @@ def _rank_frames(acts: list[Act], grids: list[ProposalGrid], camerawork: Cameraw
         drawn.clear()
         for act, grid in zip(acts, grids, strict=True):
             cameras, shot = grid.cameras[:_JUDGED], act.line.shots[0]
-            about = [objects_of(shot, grid, act.filming, act.staged)] * len(cameras)
+            about = [about_of(shot, grid, act.filming, act.staged)] * len(cameras)
             drawn.append(camerawork.judge_frames(act.staged, "board", grid.story, cameras, about=about))
         return SEGMENTS * sum(len(d.frames) for d in drawn)
 

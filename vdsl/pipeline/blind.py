@@ -20,7 +20,7 @@ from ..propose.types import CameraProposal, ProposalGrid
 from .captions import grid
 from .casting import TEST_EVERY, Scene, Troupe
 from .filming import Camerawork
-from .guides import objects_of
+from .guides import about_of
 from .judging import DiscriminatorJudge
 
 _SEED = 2_000_003  # added to the seed: other stories than of training sets and hidden picks
@@ -72,10 +72,10 @@ def _scores(
     judge: DiscriminatorJudge, camerawork: Camerawork, scene: Scene, shown: ProposalGrid
 ) -> np.ndarray:
     shot, parts = scene.shots[0], []
-    objects = objects_of(shot, shown, scene.filming, scene.staged)
+    subject = about_of(shot, shown, scene.filming, scene.staged)
     for begin in range(0, len(shown.cameras), _AT_ONCE):
         cameras = shown.cameras[begin : begin + _AT_ONCE]
-        about = [objects] * len(cameras)
+        about = [subject] * len(cameras)
         seen = camerawork.judge_frames(scene.staged, shot.style, shown.story, cameras, about=about)
         parts.append(judge.scores(cameras, seen))
     return np.concatenate(parts)

@@ -21,7 +21,7 @@ from ..propose.types import CameraProposal, ProposalGrid
 from .casting import Scene
 from .designer import faults, judged, picks
 from .filming import segment_frames
-from .guides import objects_of
+from .guides import About, about_of
 from .hints import frame_hints_of
 from .labels import classes
 from .perturb import mistyped, perturbed
@@ -32,6 +32,7 @@ BAR = 0.7
 #: Share of the negatives that are proposals passed over; of the others, of those that are of no type. The
 #: rest is perturbed.
 _PASSED_OVER, _MISTYPED = 0.5, 0.2
+_KINDS = ("perturbed", "mistyped")
 _MISTYPED_STRENGTH = 0.5
 #: Strength of a proposal that was passed over, by the criteria in which it has a fault.
 _A_FAULT = 0.25
@@ -43,6 +44,7 @@ _LOST = 0.08
 _SEEN_WAY, _SEEN_TURN, _SEEN_ZOOM = 0.04, 0.04, 0.05
 
 Words = tuple[str | None, str | None, str | None]
+_NOTHING = About((), {})
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,7 +53,7 @@ class Clip:
 
     kind: ``designer``, ``passed-over``, ``perturbed`` or ``mistyped``; opinion: the designer's, as
     :func:`vdsl.pipeline.designer.judged`; words: movement, size and angle as classes, None for what it does
-    not show clearly; frames: what is known of each judged frame in numbers; objects: ids of what it is about
+    not show clearly; frames: what is known of each judged frame in numbers; about: what it is about
     doubtful: whether it is bad for reasons that no picture shows, or hardly bad; bare: whether its guides are
     enough
     """
@@ -62,7 +64,7 @@ class Clip:
     opinion: float
     words: Words
     frames: dict[str, list[float]] = field(default_factory=dict)
-    objects: tuple[int, ...] = ()
+    about: About = _NOTHING
     doubtful: bool = False
     bare: bool = False
 
@@ -74,7 +76,7 @@ class Clip:
 
 def clips_of(scene: Scene, rng: np.random.Generator) -> list[Clip]:
     """The designer's picks of a scene's shots, and as many takes that are not; to learn from, all other
-    proposals as well, bare."""
+    proposals as well, and of every pick two takes that are spoilt, all bare."""
     out: list[Clip] = []
     for shot, grid in zip(scene.shots, scene.grids, strict=True):
         opinion = judged(grid.cameras)
@@ -93,13 +95,16 @@ def clips_of(scene: Scene, rng: np.random.Generator) -> list[Clip]:
             if bad is not None:
                 words = _read(scene, shot, grid, good)
                 made += [Clip(good, "designer", 0.0, float(opinion[i]), words), bad]
+            for kind in _KINDS if scene.split == "train" else ():
+                more = _spoilt(scene, shot, grid, good, float(opinion[i]), rng, kind)
+                made += [] if more is None else [replace(more, bare=True)]
         shown = {id(clip.camera) for clip in made}
         for camera, thought in zip(grid.cameras, opinion, strict=True):
             if id(camera) not in shown and scene.split == "train":
                 made.append(_bare(scene, shot, grid, camera, float(thought)))
-        objects = objects_of(shot, grid, scene.filming, scene.staged)
+        about = about_of(shot, grid, scene.filming, scene.staged)
         for clip in made:
-            out.append(replace(clip, frames=_frames(scene, shot, grid, clip.camera), objects=objects))
+            out.append(replace(clip, frames=_frames(scene, shot, grid, clip.camera), about=about))
     return out
 
 
@@ -138,14 +143,17 @@ def _spoilt(
     good: CameraProposal,
     appeal: float,
     rng: np.random.Generator,
+    kind: str = "",
 ) -> Clip | None:
-    """A worse take made of a good one; None where nothing that was tried made it worse."""
-    if rng.random() < _MISTYPED:
-        kind, strengths = "mistyped", [_MISTYPED_STRENGTH] * len(_TRIES)
+    """A worse take made of a good one, of a kind or of any; None where nothing that was tried made it
+    worse."""
+    kind = kind or _KINDS[int(rng.random() < _MISTYPED)]
+    if kind == "mistyped":
+        strengths = [_MISTYPED_STRENGTH] * len(_TRIES)
         tracks = [mistyped(good.track, rng) for _ in strengths]
     else:
         drawn = float(rng.uniform(0.1, 1.0))
-        kind, strengths = "perturbed", [max(drawn, least) for least in _TRIES]
+        strengths = [max(drawn, least) for least in _TRIES]
         tracks = [perturbed(good.track, strength, rng) for strength in strengths]
     tried = [replace(good, track=track) for track in tracks]
     tried = measured_anew(shot, grid.story[good.story], scene.filming, tried)

@@ -42,7 +42,7 @@ from .labels import WORDS
 from .progress import Progress, Silence
 
 #: Raised when other takes or labels come of the same seed.
-_RECIPE = 5
+_RECIPE = 6
 _PROPOSALS = 16
 _DRAWN_AT_ONCE = 64
 _SHARD = 64
@@ -197,11 +197,11 @@ def _filmed(scene: Scene, seed: int, camerawork: Camerawork, size: int) -> _Film
     for part, pictures in ((clips[:count], True), (clips[count:], False)):
         for begin in range(0, len(part), _DRAWN_AT_ONCE):
             some = part[begin : begin + _DRAWN_AT_ONCE]
-            cameras, objects = tuple(clip.camera for clip in some), [clip.objects for clip in some]
+            cameras, about = tuple(clip.camera for clip in some), [clip.about for clip in some]
             stories, style = stories_of(scene.grids), scene.shots[0].style
             drawn.append(
                 camerawork.judge_frames(
-                    scene.staged, style, stories, cameras, (size, size), about=objects, pictures=pictures
+                    scene.staged, style, stories, cameras, (size, size), about=about, pictures=pictures
                 )
             )
     frames = [seen.frames for seen in drawn if seen.frames.size]
@@ -209,7 +209,7 @@ def _filmed(scene: Scene, seed: int, camerawork: Camerawork, size: int) -> _Film
     labels = []
     for k, clip in enumerate(clips):
         c = clip.camera
-        about = {
+        told = {
             "story": scene.number,
             "kind": clip.kind,
             "camera": f"{c.movement} {c.scale} {c.angle}",
@@ -222,7 +222,7 @@ def _filmed(scene: Scene, seed: int, camerawork: Camerawork, size: int) -> _Film
             **({"doubtful": True} if clip.doubtful else {}),
         }
         group, good = scene.place.partition(".")[0], clip.kind == "designer"
-        labels.append((good, *clip.words, group, clip.strength, scene.split, about, guides[k : k + 1]))
+        labels.append((good, *clip.words, group, clip.strength, scene.split, told, guides[k : k + 1]))
     empty = np.zeros((0, SEGMENTS, size, size, 3), np.uint8)
     return _Filmed(np.concatenate(frames) if frames else empty, labels)
 

@@ -62,16 +62,19 @@ _LITTLE = 0.02  # the worst a criterion is taken for
 
 def faults(measures: Measures, seen: bool = False) -> dict[str, NDArray[np.bool_]]:
     """By criterion, which of the takes [P] have a fault in it. seen: only those that a picture can show"""
-    m = {k: np.asarray(v, float) for k, v in measures.items()}
-    out = {name: np.zeros(np.shape(m["visibility"]), bool) for name in CRITERIA}
-    left = UNSEEN if seen else ()
-    for criterion, name, least in LEAST:
-        if name not in left:
-            out[criterion] = out[criterion] | (m[name] < least)
-    for criterion, name, most in MOST:
-        if name not in left:
-            out[criterion] = out[criterion] | (m[name] > most)
+    found = faults_by_measure(measures)
+    out = {name: np.zeros(np.shape(measures["visibility"]), bool) for name in CRITERIA}
+    for criterion, name, _ in (*LEAST, *MOST):
+        if not (seen and name in UNSEEN):
+            out[criterion] = out[criterion] | found[name]
     return out
+
+
+def faults_by_measure(measures: Measures) -> dict[str, NDArray[np.bool_]]:
+    """By the name of a measure, which of the takes [P] have a fault in it."""
+    m = {k: np.asarray(v, float) for k, v in measures.items()}
+    least = {name: m[name] < bound for _, name, bound in LEAST}
+    return least | {name: m[name] > bound for _, name, bound in MOST}
 
 
 def qualities(measures: Measures) -> dict[str, Array]:

@@ -15,7 +15,7 @@ from runtime.raster.types import STYLES, Camera, Frames, Views
 from ..cinema.track import CameraTrack, camera_axes
 from ..propose.types import CameraProposal, StoryProposal
 from ..stage.assemble import StagedScene, palettes
-from .guides import guides_of, roles_of
+from .guides import About, Places, guides_of, roles_of
 from .shutter import between, camera_between, exposed_frames, moments_needed
 
 #: The discriminator looks at this many frames of this size (the paper's section 3.3).
@@ -61,12 +61,12 @@ class Camerawork:
         cameras: tuple[CameraProposal, ...],
         size: tuple[int, int] = JUDGE_SIZE,
         which: Sequence[int] = range(SEGMENTS),
-        about: Sequence[tuple[int, ...]] | None = None,
+        about: Sequence[About] | None = None,
         pictures: bool = True,
     ) -> Seen:
         """Frames for ranking of P proposals; shared moments are skinned once.
 
-        which: of the eight, those that are wanted; about: ids of what each camera is about, for guides;
+        which: of the eight, those that are wanted; about: what each camera is about, for guides;
             pictures: whether to shade, or frames of 0 x 0 will do
         """
         views, moments = self._segments(staged, stories, cameras, which)
@@ -75,9 +75,10 @@ class Camerawork:
             roles = np.repeat(roles_of(staged, about), len(which), axis=0)
         drawn = self._renderer(staged, style).render(moments, views, size, roles=roles, pictures=pictures)
         frames = drawn.color.reshape(len(cameras), len(which), *drawn.color.shape[1:])
-        if drawn.guides is None:
+        if drawn.guides is None or about is None:
             return Seen(frames, None)
-        return Seen(frames, guides_of(drawn.guides, views.camera, len(cameras), which, SEGMENTS))
+        places = [_at(subject.places[c.story], which) for c, subject in zip(cameras, about, strict=True)]
+        return Seen(frames, guides_of(drawn.guides, views.camera, places, which, SEGMENTS))
 
     def judge_ids(
         self,
@@ -178,6 +179,12 @@ class Camerawork:
             self._renderers[style].load(staged.render)
             self._loaded[style] = staged
         return self._renderers[style]
+
+
+def _at(places: Places, which: Sequence[int]) -> Places:
+    """The same in some of the judged frames."""
+    at = segment_frames(len(places.points))[list(which)]
+    return Places(places.points[at], places.face[at], places.seconds)
 
 
 def _take_detail(

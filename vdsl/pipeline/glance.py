@@ -18,6 +18,7 @@ from ..propose.types import CameraProposal, ProposalGrid
 from ..stage.assemble import StagedScene
 from .ahead import one_ahead
 from .filming import SEGMENTS, Camerawork, Seen
+from .guides import About
 from .judging import Judge
 from .progress import StageClock
 
@@ -42,13 +43,13 @@ def second_looks(count: int) -> int:
 class Screening:
     """Shows a judge some frames of some proposals.
 
-    objects: ids of what their cameras are about; judge: asked for when there is something to judge
+    about: what their cameras are about; judge: asked for when there is something to judge
     """
 
     staged: StagedScene
     style: str
     grid: ProposalGrid
-    objects: tuple[int, ...]
+    about: About
     camerawork: Camerawork
     judge: Callable[[], Judge]
     clock: StageClock
@@ -62,7 +63,7 @@ class Screening:
 
         def drawn(cameras: tuple[CameraProposal, ...]) -> Seen:
             with clock.spent("draw", len(frames) * len(cameras)):
-                about = [self.objects] * len(cameras)
+                about = [self.about] * len(cameras)
                 return self.camerawork.judge_frames(
                     self.staged, self.style, self.grid.story, cameras, which=frames, about=about
                 )

@@ -1,30 +1,71 @@
 """The guides of drawn shots: what the renderer knows of them, as the ranker takes it (:mod:`ranker.guides`).
 
-Assumes pictures drawn with roles. Guarantees that all that is told is of what the pictures show: no plan of
-the camera's, no measure and no judgement goes in.
+Assumes pictures drawn with roles. Guarantees that all that is told is of where things are in the pictures, or
+would be with a wider frame: nothing of what was asked for, no measure and no judgement goes in.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ranker.guides import CHANNELS, FLOW, SIDE, Guides, pairs
+from ranker.guides import CHANNELS, FARTHEST, FLOW, MARKS, POINTS, SIDE, Guides, pairs
+from ranker.guides import NEAREST as NEAREST_TOLD
 from runtime.raster.types import FAR, GUIDE_SIDE, NEAREST, OTHERS, SUBJECT, Camera
 
+from ..cinema.track import project
 from ..lang.ir import Shot
 from ..propose.subjects import Filming, find_object, subject_of
 from ..propose.types import ProposalGrid
 from ..stage.assemble import StagedScene
 
 assert GUIDE_SIDE == SIDE
-_FARTHEST = 3.0  # half frames that something goes at most
+assert (NEAREST, FAR) == (NEAREST_TOLD, FARTHEST)
+_FARTHEST = 3.0  # half frames that something goes, or is off the middle, at most
 _BEHIND = 0.05  # of a ray's length ahead: what is nearer to the plane of the lens counts as this
 
 
-def objects_of(shot: Shot, grid: ProposalGrid, filming: Filming, staged: StagedScene) -> tuple[int, ...]:
+@dataclass(frozen=True, eq=False)
+class Places:
+    """Where in a performance of T frames is what a camera is about.
+
+    points: float32 [T, len(POINTS), 3], NaN where there is no such point; face: [T, 3], its direction
+    seconds: how long the performance is
+    """
+
+    points: NDArray[np.float32]
+    face: NDArray[np.float32]
+    seconds: float
+
+
+@dataclass(frozen=True, eq=False)
+class About:
+    """What the cameras of a shot are about: ids of objects, and where it is, by the performance's index."""
+
+    objects: tuple[int, ...]
+    places: dict[int, Places]
+
+
+def about_of(shot: Shot, grid: ProposalGrid, filming: Filming, staged: StagedScene) -> About:
+    """What the cameras of a shot are about, of all performances."""
+    places = {}
+    for story in grid.story:
+        subject = subject_of(shot, story, filming)
+        points = np.full((story.frames, len(POINTS), 3), np.nan, np.float32)
+        for k, name in enumerate(POINTS):
+            if name in subject.landmarks:
+                points[:, k] = subject.landmarks[name]
+        for name, path in zip(("other_1", "other_2"), story.interest, strict=False):
+            points[:, POINTS.index(name)] = path
+        face = subject.face.astype(np.float32)
+        places[story.index] = Places(points, face, story.frames / filming.fps)
+    return About(_objects_of(shot, grid, filming, staged), places)
+
+
+def _objects_of(shot: Shot, grid: ProposalGrid, filming: Filming, staged: StagedScene) -> tuple[int, ...]:
     """Ids of what the cameras of a shot are about; none for a place, which is everything there is."""
     if not grid.story:
         return ()
@@ -36,24 +77,29 @@ def objects_of(shot: Shot, grid: ProposalGrid, filming: Filming, staged: StagedS
     return () if item is None else (item.id,)
 
 
-def roles_of(staged: StagedScene, about: Sequence[tuple[int, ...]]) -> NDArray[np.uint8]:
-    """The roles of all objects for each of P cameras, uint8 [P, objects]. about: the ids of their subjects"""
+def roles_of(staged: StagedScene, about: Sequence[About]) -> NDArray[np.uint8]:
+    """The roles of all objects for each of P cameras, uint8 [P, objects]."""
     people = list(staged.object_ids.values())
     out = np.zeros((len(about), len(staged.world.objects) + len(people)), np.uint8)
     out[:, people] = OTHERS
-    for row, ids in zip(out, about, strict=True):
-        row[list(ids)] = SUBJECT
+    for row, subject in zip(out, about, strict=True):
+        row[list(subject.objects)] = SUBJECT
     return out
 
 
 def guides_of(
-    drawn: NDArray[np.uint8], camera: Camera, shots: int, which: Sequence[int], whole: int
+    drawn: NDArray[np.uint8],
+    camera: Camera,
+    places: Sequence[Places],
+    which: Sequence[int],
+    whole: int,
 ) -> Guides:
     """Guides of P shots by k frames each.
 
-    drawn: uint8 [P k, SIDE, SIDE, 6] of the renderer; camera: of these P k pictures; which: the k frames they
-    are, of ``whole``
+    drawn: uint8 [P k, SIDE, SIDE, 6] of the renderer; camera: of these P k pictures; places: [P] in these k
+    frames; which: the k frames they are, of ``whole``
     """
+    shots = len(places)
     count = len(which)
     maps = np.empty((shots, count, SIDE, SIDE, len(CHANNELS)), np.uint8)
     maps[..., :-1] = drawn.reshape(shots, count, *drawn.shape[1:])
@@ -65,7 +111,35 @@ def guides_of(
     if count == whole:
         near = _nearness(maps[..., CHANNELS.index("nearness")])
         flow[:] = _flow(near, camera, shots, matched)
-    return Guides(maps, flow)
+    return Guides(maps, flow, _marks(maps[..., CHANNELS.index("nearness")], camera, places))
+
+
+def _marks(near: NDArray[np.uint8], camera: Camera, places: Sequence[Places]) -> NDArray[np.float16]:
+    """float16 [P, T, len(MARKS)]; near: the codes of nearness, [P, T, SIDE, SIDE]."""
+    shots, count = near.shape[:2]
+    points = np.concatenate([p.points for p in places]).astype(float)
+    face = np.concatenate([p.face for p in places]).astype(float)
+    position, focal = camera.position.astype(float), camera.focal.astype(float)
+    axes = camera.axes.astype(float)
+    xy, depth = project(points, position, axes, focal, camera.sensor)
+    before = np.isfinite(depth) & (depth > _BEHIND)
+    place = np.where(before[..., None], np.clip((2 * xy - 1) * (1, -1), -_FARTHEST, _FARTHEST), np.nan)
+    inside = before & (np.abs(place) < 1).all(axis=-1)
+    cell = np.where(inside[..., None], (place * (1, -1) + 1) * SIDE / 2, 0).astype(int)
+    code = near.reshape(shots * count, SIDE, SIDE)
+    seen = code[np.arange(len(code))[:, None], cell[..., 1], cell[..., 0]].astype(float)
+    own = np.log(FAR / np.maximum(depth, NEAREST, where=before, out=np.ones_like(depth)))
+    covered = np.where(seen > 0, (seen - 1) / 254 * np.log(FAR / NEAREST), -1.0) - own
+    told = np.stack([place[..., 0], place[..., 1], np.where(inside, covered, np.nan)], axis=-1)
+    waist, eyes = (points[:, POINTS.index(name)] for name in ("waist", "eyes"))
+    away = np.maximum(np.linalg.norm(waist - position, axis=-1), 0.2)
+    lean = np.arcsin(np.clip(-axes[:, 0, 2], -1, 1))
+    seconds = np.repeat([p.seconds for p in places], count)
+    alone = [*np.einsum("nac,nc->an", axes, face), np.log(focal / away), np.log(away), np.log(focal)]
+    alone += [np.clip(position[:, 2] - eyes[:, 2], -_FARTHEST, _FARTHEST), lean, np.log(seconds)]
+    marks = np.concatenate([told.reshape(len(told), -1), np.stack(alone, axis=-1)], axis=1)
+    assert marks.shape[1] == len(MARKS)
+    return marks.reshape(shots, count, len(MARKS)).astype(np.float16)
 
 
 def _rays(camera: Camera, side: int) -> NDArray[np.float32]:

@@ -28,7 +28,7 @@ from .ahead import one_ahead
 from .casting import TEST_EVERY, Scene, Troupe
 from .designer import judged, picks
 from .filming import Camerawork, Seen
-from .guides import objects_of
+from .guides import about_of
 from .judging import prior
 from .progress import Progress, Silence
 
@@ -157,11 +157,11 @@ def _scored(
     margins: list[float] = []
     size = ranker.config.size
 
-    objects = objects_of(shot, grid, scene.filming, scene.staged)
+    subject = about_of(shot, grid, scene.filming, scene.staged)
 
     def drawn(begin: int) -> Seen:
         cameras = grid.cameras[begin : begin + _AT_ONCE]
-        about = [objects] * len(cameras)
+        about = [subject] * len(cameras)
         return camerawork.judge_frames(
             scene.staged, shot.style, grid.story, cameras, (size, size), about=about
         )

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from ..cinema.subject import Subject
 from ..cinema.track import camera_axes, project
 from ..propose.types import CameraProposal
+from .designer import faults_by_measure
 
 #: Measures that are heavy-tailed: their square root is taught.
 _LONG = ("jerk", "speed", "angular_speed")
@@ -20,14 +21,15 @@ _POINTS, _FAR = ("crown", "eyes", "chin", "waist", "feet"), 3.0
 
 
 def hints_of(camera: CameraProposal) -> dict[str, float]:
-    """Measures and the camera's own motion, by name; names that begin with ``right`` change their sign in a
-    mirrored picture.
+    """Measures, which of them are faults, and the camera's own motion, by name; names that begin with
+    ``right`` change their sign in a mirrored picture.
 
     Motion is from the first frame to the last: turns in radians, ways as a share of the distance to what is
     aimed at, in the camera's first axes.
     """
     track = camera.track
     found = {k: float(v) for k, v in camera.measures.items()}
+    found |= {f"fault_{k}": float(v) for k, v in faults_by_measure(camera.measures).items()}
     found |= {k: max(found[k], 0.0) ** 0.5 for k in _LONG if k in found}
     distance = np.maximum(np.linalg.norm(track.look_at - track.position, axis=-1), 0.2)
     way = camera_axes(track.rotation[0]) @ (track.position[-1] - track.position[0]) / distance[0]

@@ -35,7 +35,7 @@ from .depends import digest, shot_text
 from .edit import CANDIDATES, Ends, candidates, ends_of
 from .filming import Camerawork
 from .glance import Scored, Screening
-from .guides import objects_of
+from .guides import about_of
 from .judging import Judge
 from .keys import code_digest, judge_digest, options_digest
 from .options import Options
@@ -242,8 +242,8 @@ class Shooting:
         if not grid.cameras or self.run.options.rank == "geometry":
             return Scored.full(self.run.judge().scores(grid.cameras, None) if grid.cameras else np.zeros(0))
         run = self.run
-        objects = objects_of(shot, grid, act.filming, act.staged)
-        screening = Screening(act.staged, shot.style, grid, objects, run.camerawork, run.judge, run.clock)
+        about = about_of(shot, grid, act.filming, act.staged)
+        screening = Screening(act.staged, shot.style, grid, about, run.camerawork, run.judge, run.clock)
         found = self._read(self._scores_key(line, shot), dict)
         if found is not None and len(found["first"]) == len(grid.cameras):
             return Scored(lambda: found["first"], screening.scores, found["known"])

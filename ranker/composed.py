@@ -1,0 +1,105 @@
+"""Composition from guides: what film grammar looks at in a frame, and how it goes over a shot.
+
+Nothing here is learnt. Assumes marks and nearness as :mod:`ranker.guides` has them. Guarantees numbers of
+about the size of 1 that are known for any marks.
+"""
+
+from __future__ import annotations
+
+import math
+
+import torch
+from torch import Tensor
+
+from .guides import FARTHEST, MARKS, NEAREST, POINTS, SIDE
+
+_SHARP = 40.0  # how fast a point goes from in the frame to out of it, by half frames
+_CLEAR, _HARD = 0.35, 12.0  # what is nearer than a point by so much (log) covers it; how sharp that bound is
+#: Means and deviations by which marks come near 0 and 1; the others are so of themselves.
+_COMMON = {"size": (3.2, 0.7), "lens": (3.8, 0.35), "distance": (0.7, 0.7), "seconds": (1.4, 0.6)}
+#: Places across the frame, half frames to the right and down, that are asked for what is much nearer than the
+#: subject, and how much nearer (log) counts.
+_LOOKS = [(x, y) for x in (-0.85, -0.3, 0.3, 0.85) for y in (-0.6, 0.5)]
+_NEARER = (0.3, math.log(2), 1.1)
+
+#: Numbers of :func:`composed` of a frame: marks, which points there are, composition, looks, and of each
+#: point whether it is covered, and whether it is in the frame.
+COMPOSED = len(MARKS) + len(POINTS) + 9 + len(_LOOKS) + len(_NEARER) + 2 * len(POINTS)
+#: Which of them says whether the eyes are in the frame.
+EYES_INSIDE = COMPOSED - len(POINTS) + POINTS.index("eyes")
+#: Numbers that :func:`over_time` makes of each of a frame's.
+SUMMED = 10
+
+
+def composed(told: Tensor, nearness: Tensor) -> Tensor:
+    """What film grammar looks at in frames, float32 [B, T, COMPOSED].
+
+    told: their marks [B, T, marks]; nearness: codes of their maps [B, T, SIDE, SIDE]
+
+    Who composes a picture asks for sums and products of marks, as where the face points by where it is, or
+    for bounds, as whether a point is within the frame: that is given rather than to be learnt.
+    """
+    marks = dict(zip(MARKS, told.unbind(-1), strict=True))
+    common = [(marks[n] - _COMMON[n][0]) / _COMMON[n][1] if n in _COMMON else marks[n] for n in MARKS]
+    right, up, nearer = (
+        torch.stack([marks[f"{what}_{point}"] for point in POINTS], -1) for what in ("right", "up", "covered")
+    )
+    there = right.isfinite()
+    right, up = right.nan_to_num(3.0), up.nan_to_num(3.0)
+    inside = torch.sigmoid(_SHARP * (1 - right.abs())) * torch.sigmoid(_SHARP * (1 - up.abs())) * there
+    covered = torch.sigmoid(_HARD * (nearer.nan_to_num(-1.0) - _CLEAR)) * inside
+    at = dict(zip(POINTS, up.unbind(-1), strict=True))
+    sideways = right[..., POINTS.index("eyes")]
+    composition = [
+        -marks["right_face"] * sideways,  # room ahead of the face
+        ((1 - at["eyes"]) / 2 - 1 / 3).abs(),  # off the upper third
+        sideways.abs(),
+        (at["crown"] - 1).clamp_min(0),
+        (at["chin"] - 1).clamp_min(0),
+        (-1 - at["waist"]).clamp_min(0),
+        (-1 - at["feet"]).clamp_min(0),
+        at["crown"] - at["feet"],
+        at["crown"] - at["chin"],
+    ]
+    looks, share = _foreground(nearness, marks["distance"])
+    parts = [torch.stack(common, -1).nan_to_num(), there.float(), torch.stack(composition, -1)]
+    return torch.cat([*parts, looks, share, covered, inside], -1)
+
+
+def _foreground(nearness: Tensor, distance: Tensor) -> tuple[Tensor, Tensor]:
+    """Whether what is seen at the looks is much nearer than the subject, [B, T, looks], and the shares of the
+    picture that are nearer by so much, [B, T, 3]. nearness: codes [B, T, SIDE, SIDE]; distance: its log"""
+    code = nearness.float()
+    away = (1 - (code - 1) / 254) * math.log(FARTHEST / NEAREST) + math.log(NEAREST)  # log metres
+    by = torch.where(code > 0, distance[..., None, None] - away, -2.0)
+    column, row = (torch.tensor([int((look[k] + 1) * SIDE / 2) for look in _LOOKS]) for k in (0, 1))
+    looks = torch.sigmoid(_HARD * (by[:, :, row.to(by.device), column.to(by.device)] - math.log(2)))
+    return looks, torch.stack([(by > least).float().mean((2, 3)) for least in _NEARER], -1)
+
+
+def over_time(features: Tensor, times: Tensor, inside: Tensor) -> Tensor:
+    """What becomes of features of frames over a shot: [B, T, D] and [B, T] -> [B, 10 D].
+
+    Average, slope and spread; the extremes, for what is amiss only for a time; and averages of the beginning
+    and the end, a quarter or a half, and of when the subject is in the frame: a pan is about it at one end
+    alone. inside: how much it is, [B, T]
+    """
+    begins = [(1 - times / 0.35).clamp_min(0), torch.sigmoid(20 * (0.55 - times))]
+    ends = [(1 - (1 - times) / 0.35).clamp_min(0), torch.sigmoid(20 * (times - 0.45))]
+    weight = torch.stack([*begins, *ends, inside], 1)
+    weight = weight / (weight.sum(2, keepdim=True) + 1e-3)
+    parts = torch.einsum("bwt,btd->bwd", weight, features).flatten(1)
+    return torch.cat([fuse(features, times), features.amin(1), features.amax(1), parts], 1)
+
+
+def fuse(features: Tensor, times: Tensor) -> Tensor:
+    """Average, least-squares slope and spread over time: [B, T, D] and [B, T] -> [B, 3 D].
+
+    All three mean the same for any subset of a shot's frames. One frame has no slope and no spread.
+    """
+    average = features.mean(1)
+    offset = (times - times.mean(1, keepdim=True)).unsqueeze(2)
+    change = features - average.unsqueeze(1)
+    slope = (offset * change).sum(1) / offset.square().sum(1).clamp_min(1e-6)
+    spread = (change.square().mean(1) + 1e-6).sqrt()
+    return torch.cat([average, slope, spread], 1)

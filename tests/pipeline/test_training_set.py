@@ -24,7 +24,7 @@ from vdsl.pipeline.acts import stage_acts
 from vdsl.pipeline.casting import Scene, Troupe, split_of_story
 from vdsl.pipeline.clips import BAR, Clip, clips_of, moves
 from vdsl.pipeline.dataset import _Filmed, generate
-from vdsl.pipeline.designer import faults, judged, picks
+from vdsl.pipeline.designer import LEAST, MOST, faults, judged, picks
 from vdsl.pipeline.hints import frame_hints_of, hints_of
 from vdsl.pipeline.labels import WORDS, classes
 from vdsl.pipeline.perturb import mistyped, perturbed
@@ -210,7 +210,7 @@ def test_what_is_not_drawn_is_every_other_proposal_as_the_designer_says(scenes: 
         found = clips_of(scene, np.random.default_rng(2))
         every = {id(c) for grid in scene.grids for c in grid.cameras}
         drawn = {id(clip.camera) for clip in found if not clip.bare} & every
-        bare = [clip for clip in found if clip.bare]
+        bare = [clip for clip in found if clip.bare and clip.kind in ("designer", "passed-over")]
         assert {id(clip.camera) for clip in bare} == every - drawn
         for clip in bare:
             thought = judged([clip.camera])[0]
@@ -219,6 +219,12 @@ def test_what_is_not_drawn_is_every_other_proposal_as_the_designer_says(scenes: 
             wrong = faults(clip.camera.measures, seen=True)
             shows = any(bool(f) for f in wrong.values()) or 0 <= thought < BAR * 0.92
             assert clip.doubtful == (thought < BAR and not shows)
+        spoilt = [clip for clip in found if clip.bare and clip.kind in ("perturbed", "mistyped")]
+        picked = sum(clip.kind == "designer" and not clip.bare for clip in found)
+        assert 0.8 * 2 * picked <= len(spoilt) <= 2 * picked  # two of each, but what cannot be made worse
+        for clip in spoilt:
+            assert id(clip.camera) not in every
+            assert clip.opinion < BAR or None in clip.words
         for_test = clips_of(replace(scene, split="test"), np.random.default_rng(2))
         assert not any(clip.bare for clip in for_test)
 
@@ -359,8 +365,10 @@ def test_hints_of_a_mirrored_take_are_mirrored() -> None:
         rotation=track.rotation * np.array([-1.0, 1.0, -1.0]),
     )
     camera = CameraProposal(**dict.fromkeys((f.name for f in fields(CameraProposal)), None))  # type: ignore[arg-type]
-    here, there = (hints_of(replace(camera, track=t, measures={"jerk": 4.0})) for t in (track, other))
+    measures = {name: bound for _, name, bound in (*LEAST, *MOST)} | {"jerk": 4.0, "headroom_error": 0.5}
+    here, there = (hints_of(replace(camera, track=t, measures=measures)) for t in (track, other))
     assert here["jerk"] == 2.0
+    assert [k for k, v in here.items() if k.startswith("fault_") and v] == ["fault_headroom_error"]
     assert here["right_panning"] == pytest.approx(track.rotation[0, 2] - track.rotation[-1, 2], abs=1e-3)
     for name, value in here.items():
         sign = -1 if name.startswith(MIRRORED) else 1

@@ -33,7 +33,7 @@ class Batch(NamedTuple):
 
     query: None where guides alone are looked at; professional: 1 or less for good ones, by their grade,
         NaN for doubtful ones
-    opinion [B], how well they are liked; NaN is not known
+    liked [B], how well good ones are liked among themselves; NaN is not known
     hints [B, K], marks [B, T, M] of the query's frames, mapped [B, T, M] of all: NaN is not known
     moved [B, pairs, NUMBERS], likewise; guides of all frames, with zeros for maps where they are kept back
     """
@@ -43,7 +43,7 @@ class Batch(NamedTuple):
     key: Tensor
     key_times: Tensor
     professional: Tensor
-    opinion: Tensor
+    liked: Tensor
     classes: Tensor
     hints: Tensor
     marks: Tensor
@@ -131,7 +131,7 @@ def _batch(
         times[:, :0] if pictures is None else pictures[:, count:],
         times[:, count:],
         torch.from_numpy(professional.astype(np.float32)),
-        torch.from_numpy(data.opinion[clips]),
+        torch.from_numpy(data.liked[clips]),
         torch.from_numpy(classes),
         torch.from_numpy(hints),
         torch.from_numpy(np.stack([view.marks for view in views])),

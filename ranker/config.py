@@ -12,6 +12,9 @@ from typing import Any
 from .errors import RankerError
 
 BACKBONES = ("resnet50", "resnet18")
+#: Of :attr:`ModelConfig.liking`, where it is taught how well good shots are liked. The best of many are found
+#: by more, the good among the spoilt by less.
+LIKING = 2.0
 
 
 @dataclass(frozen=True)
@@ -25,6 +28,7 @@ class ModelConfig:
     measures, marks: numbers of L_h of a shot, and of a frame, that are read off the features before the heads
         judge, 0 for none
     guides: width of what is made of guides, 0 for none
+    liking: what a deviation in how well a good shot is liked counts beside log odds of being good
     """
 
     movements: tuple[str, ...]
@@ -40,6 +44,7 @@ class ModelConfig:
     measures: int = 0
     marks: int = 0
     guides: int = 0
+    liking: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -117,17 +122,17 @@ class TrainConfig:
 PAPER = TrainConfig(phases=(Phase(epochs=60, size=224, batch=128),))
 CPU = TrainConfig(
     phases=(
-        Phase(epochs=12, size=0, batch=64, share=0.4),
+        Phase(epochs=10, size=0, batch=128, share=0.8),
         Phase(epochs=4, size=64, frames=3, key_frames=1, batch=16),
         Phase(epochs=3, size=96, frames=3, key_frames=1, batch=16),
         Phase(epochs=2, size=128, frames=3, key_frames=1, batch=16),
     ),
     inner=128,
-    learning_rate=8e-4,
+    learning_rate=1e-3,
     momentum=0.99,
     contrast_weight=0.25,
-    hint_weight=6.0,
-    order_weight=1.0,
+    hint_weight=3.0,
+    order_weight=4.0,
     smoothing=0.02,
 )
 RECIPES = {"paper": PAPER, "cpu": CPU}
@@ -158,12 +163,15 @@ def to_json(config: ModelConfig | TrainConfig | Card) -> dict[str, Any]:
 def model_from_json(values: dict[str, Any]) -> ModelConfig:
     """Read a :class:`ModelConfig`; raises :class:`RankerError` on anything that is not one."""
     try:
-        words = {k: tuple(str(w) for w in values[k]) for k in ("movements", "scales", "angles")}
-        rest = {k: int(values[k]) for k in ("frames", "size", "contrast")}
+        words: dict[str, Any] = {
+            k: tuple(str(w) for w in values[k]) for k in ("movements", "scales", "angles")
+        }
+        rest: dict[str, Any] = {k: int(values[k]) for k in ("frames", "size", "contrast")}
         rest |= {k: int(values.get(k, 0)) for k in ("motion", "measures", "marks", "guides")}
         rest["inner"] = int(values.get("inner", rest["size"]))
-        moments = bool(values.get("moments", False))
-        config = ModelConfig(**words, backbone=str(values["backbone"]), moments=moments, **rest)  # type: ignore[arg-type]
+        moments, liking = bool(values.get("moments", False)), float(values.get("liking", 0.0))
+        rest |= {"backbone": str(values["backbone"]), "moments": moments, "liking": liking}
+        config = ModelConfig(**words, **rest)
     except (KeyError, TypeError, ValueError) as error:
         raise RankerError(f"the ranker's config is not understood: {error!r}") from error
     if config.backbone not in BACKBONES or not all((config.movements, config.scales, config.angles)):
@@ -176,6 +184,7 @@ def model_from_json(values: dict[str, Any]) -> ModelConfig:
         and 0 <= config.measures <= 4096
         and 0 <= config.marks <= 4096
         and 0 <= config.guides <= 4096
+        and 0 <= config.liking <= 100
     ):
         raise RankerError("the ranker's config is not understood: sizes out of range")
     return config

@@ -298,12 +298,15 @@ class Dataset:
         return np.array(told, np.float32)
 
     @cached_property
-    def opinion(self) -> NDArray[np.float32]:
-        """How well clips are liked, float32 [N]: ``opinion`` of a label's ``about``, above 0 for positives
-        and no more than 0 for negatives; NaN where not known, and for doubtful ones."""
-        told = np.array([float(label.about.get("opinion", np.nan)) for label in self.labels], np.float32)
-        told = np.where(self.professional > 0.5, np.maximum(told, 1e-6), np.minimum(told, 0.0))
-        return np.where(self.doubtful, np.float32(np.nan), told).astype(np.float32)
+    def liked(self) -> NDArray[np.float32]:
+        """How well positives are liked among themselves, float32 [N]: ``opinion`` of a label's ``about``, as
+        deviations from the mean, within 3; NaN where not known, and for negatives."""
+        told = np.array([float(label.about.get("opinion", np.nan)) for label in self.labels])
+        told[self.professional < 0.5] = np.nan
+        if not np.isfinite(told).any():
+            return told.astype(np.float32)
+        middle, spread = np.nanmean(told), max(np.nanstd(told), 1e-6)
+        return np.clip((told - middle) / spread, -3, 3).astype(np.float32)
 
     def split(self, share: float, seed: int) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
         """Indices to train on, and held out: whole groups in a random order until ``share`` is reached.

@@ -30,20 +30,20 @@ def evaluate(
     """Measure on the given clips, at the full picture size, as :class:`Ranker` scores them.
 
     guided: with the guides of the clips, if they have some
-    ``auc`` and ``auc_by_strength {upper end: auc}`` against what was spoilt, ``auc_all`` against all
+    By p_b ``auc`` and ``auc_by_strength {upper end: auc}`` against what was spoilt, ``auc_all`` against all
     negatives, ``auc_by_kind`` of those that say their kind,
     ``accuracy {movement, scale, angle, professional}`` (classes over positives), ``clips``; a value is None
     where there is nothing to measure it on. Doubtful clips count for none but ``clips``.
     """
     ranker = model if isinstance(model, Ranker) else Ranker(_copy(model))
     classes, label = data.classes[clips], data.professional[clips] > 0.5
-    margin, right = np.zeros(len(clips)), np.full((len(clips), 3), np.nan)
+    logit, right = np.zeros(len(clips)), np.full((len(clips), 3), np.nan)
     for begin in range(0, len(clips), _AT_ONCE):
         rows = slice(begin, begin + _AT_ONCE)
         scores = ranker.score(
             _frames(ranker, data, clips[rows]), data.guides(clips[rows]) if guided else None
         )
-        margin[rows] = scores.margin
+        logit[rows] = scores.logit
         right[rows] = _right(scores, classes[rows])
     sure = ~data.doubtful[clips]
     strength = np.array([data.labels[i].strength for i in clips])
@@ -52,18 +52,18 @@ def evaluate(
     spoilt = sure & (kind != PASSED_OVER)
     for high in STRENGTHS:
         chosen = spoilt & (label | ((strength > low) & (strength <= high)))
-        by_strength[f"{high:g}"] = auc(margin[chosen], label[chosen])
+        by_strength[f"{high:g}"] = auc(logit[chosen], label[chosen])
         low = high
     among = {k: sure & (label | (kind == k)) for k in sorted(set(kind[~label]) - {""})}
     return {
         "clips": len(clips),
-        "auc": auc(margin[spoilt], label[spoilt]),
-        "auc_all": auc(margin[sure], label[sure]),
+        "auc": auc(logit[spoilt], label[spoilt]),
+        "auc_all": auc(logit[sure], label[sure]),
         "auc_by_strength": by_strength,
-        "auc_by_kind": {k: auc(margin[of], label[of]) for k, of in among.items()},
+        "auc_by_kind": {k: auc(logit[of], label[of]) for k, of in among.items()},
         "accuracy": {
             **{k: mean(right[label, i]) for i, k in enumerate(("movement", "scale", "angle"))},
-            "professional": mean(((margin > 0) == label)[sure].astype(float)),
+            "professional": mean(((logit > 0) == label)[sure].astype(float)),
         },
     }
 
@@ -91,7 +91,8 @@ def agreement_with_fp32(
                 moved = motion(torch.from_numpy(frames).to(device))
             guided = None if guides is None else Guided.of(guides, times[0])
             pictures = torch.from_numpy(scaled(frames[0], model.config.inner)[None]).to(device)
-            exact.append(float(model(normalised(pictures), times, moved, guided).logit[0]))
+            out = model(normalised(pictures), times, moved, guided)
+            exact.append(float(model.margin(out)[0]))
     return spearman(np.array(exact), np.array(quick))
 
 

@@ -16,7 +16,7 @@ from torch import Tensor, nn
 from .composed import COMPOSED, EYES_INSIDE, SUMMED, composed, over_time
 from .guides import CHANNELS, FLOW, SIDE, Guides, pairs
 
-_MAPS, _FRAME = 256, 128  # numbers that describe the maps of a frame, and all of a frame
+_MAPS, _FRAME = 128, 128  # numbers that describe the maps of a frame, and all of a frame
 _PAIR, _MOVED = 64, 256  # and a pair of frames, all pairs
 _FINE = 20.0  # by what motion is multiplied, so that slow ones are seen
 
@@ -54,7 +54,7 @@ class GuideNet(nn.Module):
 
     def __init__(self, frames: int) -> None:
         super().__init__()
-        widths = (len(CHANNELS), 48, 96, 128)
+        widths = (len(CHANNELS), 24, 64, 128)
         steps: list[nn.Module] = []
         for before, after in pairwise(widths):
             steps += [nn.Conv2d(before, after, 3, 2, 1), nn.GroupNorm(8, after), nn.ReLU()]
@@ -66,7 +66,7 @@ class GuideNet(nn.Module):
             *(nn.Conv2d(4, 32, 3, 1, 1), nn.ReLU(), nn.Conv2d(32, 32, 3, 2, 1), nn.ReLU(), nn.Flatten()),
             *(nn.Linear(32 * (FLOW // 2) ** 2, _PAIR), nn.ReLU()),
         )
-        self.moved = nn.Sequential(nn.Linear(_PAIR * len(pairs(frames)), _MOVED), nn.ReLU(), nn.Dropout(0.2))
+        self.moved = nn.Sequential(nn.Linear(_PAIR * len(pairs(frames)), _MOVED), nn.ReLU(), nn.Dropout(0.1))
         self.frame, self.shot = _FRAME + COMPOSED, SUMMED * (_FRAME + COMPOSED) + _MOVED
 
     def forward(self, seen: Guided) -> tuple[Tensor, Tensor]:

@@ -43,12 +43,14 @@ Encoder = Callable[[Tensor], Tensor]
 class Scores:
     """What the ranker says of P shots.
 
-    professional: float32 [P], p_b; margin: float32 [P], its logit, which does not saturate
+    professional: float32 [P], p_b; logit: float32 [P], its own, which does not saturate
+    margin: float32 [P], what puts them in order: the logit, and how much good ones of this kind are liked
     movement, scale, angle: float32 [P, classes], p_c in the order of the model's words
     feature: float32 [P, D], for telling takes apart
     """
 
     professional: NDArray[np.float32]
+    logit: NDArray[np.float32]
     margin: NDArray[np.float32]
     movement: NDArray[np.float32]
     scale: NDArray[np.float32]
@@ -125,7 +127,7 @@ class Ranker:
         features = torch.cat(parts).view(len(frames), len(at), self._model.described)
         guides, times = self._used(guides, frames), self._times[at]
         guided = None if guides is None else Guided.of(guides, times)
-        return _scores(self._model.judge(features, times.expand(len(frames), -1), None, guided))
+        return self._scores(self._model.judge(features, times.expand(len(frames), -1), None, guided))
 
     def _used(self, guides: Guides | None, frames: NDArray[np.uint8]) -> Guides | None:
         """The guides of shots, if these weights take any. Raises ValueError where they do not fit the
@@ -151,7 +153,12 @@ class Ranker:
         if guides is None and self.config.motion:  # guides tell how the camera moves
             moved = motion(torch.from_numpy(frames).to(self.device))
         guided = None if guides is None else Guided.of(guides, self._times)
-        return _scores(self._model.judge(features, times, moved, guided))
+        return self._scores(self._model.judge(features, times, moved, guided))
+
+    def _scores(self, out: Output) -> Scores:
+        classes = (p.softmax(1) for p in (out.movement, out.scale, out.angle))
+        told = (out.logit.sigmoid(), out.logit, self._model.margin(out), *classes, out.feature)
+        return Scores(*(values.float().cpu().numpy() for values in told))
 
     def _eight(self, folded: nn.Module, ranges: Ranges | None) -> Encoder | None:
         """The frame encoder in eight bits, None where that cannot be or would not be quicker."""
@@ -203,21 +210,6 @@ def fold_batch_norm(backbone: nn.Module) -> nn.Module:
         parent.add_module(conv, fuse_conv_bn_eval(before, norm))
         parent.add_module(leaf, nn.Identity())
     return folded
-
-
-def _scores(out: Output) -> Scores:
-    return Scores(
-        _array(out.logit.sigmoid()),
-        _array(out.logit),
-        _array(out.movement.softmax(1)),
-        _array(out.scale.softmax(1)),
-        _array(out.angle.softmax(1)),
-        _array(out.feature),
-    )
-
-
-def _array(values: Tensor) -> NDArray[np.float32]:
-    return values.float().cpu().numpy()
 
 
 def _device(name: str) -> torch.device:

@@ -7,6 +7,8 @@ import torch
 from torch import Tensor
 from torch.nn import functional
 
+_STRAIGHT = 0.3  # deviations: small ones count too, since takes of a shot differ by little
+
 
 def binary_loss(logit: Tensor, label: Tensor, smoothing: float = 0.0) -> Tensor:
     """L_b = −[y log p_b + (1 − y) log(1 − p_b)], the mean over [B] (as printed it has a sign slip).
@@ -33,16 +35,12 @@ def class_loss(logits: tuple[Tensor, ...], labels: tuple[Tensor, ...], smoothing
     return total
 
 
-def order_loss(logit: Tensor, opinion: Tensor, least: float = 0.03) -> Tensor:
-    """L_o = −log σ(s_i − s_j), the mean over pairs of [B] of which i is good and liked better than j by
-    ``least`` (RankNet, Burges et al. 2005).
+def liking_loss(told: Tensor, liked: Tensor) -> Tensor:
+    """L_o: how far what is told of good shots is from how well they are liked among themselves, [B] both.
 
-    opinion: above 0 for good ones, the higher the better; NaN for what is not known
+    Smooth L1 (Girshick 2015) in deviations; NaN is not known, and with nothing known it is 0
     """
-    pairs = (opinion[:, None] - opinion[None] > least) & (opinion[:, None] > 0)
-    if not pairs.any():
-        return logit.new_zeros(())
-    return functional.softplus(logit[None] - logit[:, None])[pairs].mean()
+    return _apart(told, liked)
 
 
 def contrast_loss(
@@ -69,9 +67,14 @@ def contrast_loss(
 def hint_loss(told: Tensor, hints: Tensor) -> Tensor:
     """L_h: how far what is told of shots is from what is known of them, [B, K] both.
 
-    Smooth L1 (Girshick 2015); NaN is not known, and with nothing known it is 0
+    Smooth L1 (Girshick 2015) in deviations; NaN is not known, and with nothing known it is 0
     """
-    known = hints.isfinite()
-    if not known.any():
+    return _apart(told, hints)
+
+
+def _apart(told: Tensor, known: Tensor) -> Tensor:
+    """Smooth L1, straight from ``_STRAIGHT`` on, the mean over what is not NaN."""
+    sure = known.isfinite()
+    if not sure.any():
         return told.new_zeros(())
-    return functional.smooth_l1_loss(told[known], hints[known])
+    return functional.smooth_l1_loss(told[sure], known[sure], beta=_STRAIGHT)

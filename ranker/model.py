@@ -36,13 +36,14 @@ OF_GUIDES = ("guided.", "gathered.", "judged.", "reader_guided.", "marker_guided
 class Output(NamedTuple):
     """What the network says of B shots.
 
-    logit [B], of p_b; movement, scale, angle [B, classes], logits of p_c; feature [B, D], the average
-    of the frames' features; contrast [B, C], unit vectors z of L_q; told [B, measures], what is read off the
-    features of the numbers of L_h; marked [B, T, marks], the same of single frames; mapped [B, T, marks],
-    what is told of frames by their guides
+    logit [B], of p_b; liked [B], by how many deviations more than the average good one; movement, scale,
+    angle [B, classes], logits of p_c; feature [B, D], the average of the frames' features; contrast [B, C],
+    unit vectors z of L_q; told [B, measures], what is read off the features of the numbers of L_h; marked
+    [B, T, marks], the same of single frames; mapped [B, T, marks], what is told of frames by their guides
     """
 
     logit: Tensor
+    liked: Tensor
     movement: Tensor
     scale: Tensor
     angle: Tensor
@@ -101,8 +102,10 @@ class ShotRanker(nn.Module):
         self.width = width
         #: Numbers that describe a frame: [N, described] is what the backbone makes of N frames.
         self.described = width * (3 if config.moments else 1)
-        fused, sizes = 3 * self.described, (len(config.movements), len(config.scales), len(config.angles))
-        self.professional = nn.Linear(fused, 1)
+        sizes = (len(config.movements), len(config.scales), len(config.angles))
+        fused, judgements = 3 * self.described, 2 + sum(sizes)
+        self.professional, self.liked = nn.Linear(fused, 1), nn.Linear(fused, 1)
+        nn.init.zeros_(self.liked.weight)  # of sets without opinions it learns nothing
         self.movement, self.scale, self.angle = (nn.Linear(fused, n) for n in sizes)
         self.contrast = nn.Sequential(nn.Linear(width, 256), nn.ReLU(), nn.Linear(256, config.contrast))
         self.motion: nn.Module | None = None
@@ -110,7 +113,7 @@ class ShotRanker(nn.Module):
             numbers = NUMBERS * len(pairs(config.frames))
             hidden = nn.Sequential(nn.Linear(numbers, 256), nn.ReLU(), nn.Dropout(0.35))
             self.motion = nn.Sequential(*hidden, nn.Linear(256, config.motion), nn.ReLU(), nn.Dropout(0.35))
-            self.professional_moved = nn.Linear(config.motion, 1, bias=False)
+            self.professional_moved = nn.Linear(config.motion, 2, bias=False)
             self.movement_moved = nn.Linear(config.motion, len(config.movements), bias=False)
         self.reader: nn.Module | None = None
         if config.measures:
@@ -121,15 +124,15 @@ class ShotRanker(nn.Module):
                 self.marker = nn.Linear(self.described, config.marks)
             known = config.measures + 3 * config.marks
             reasons = nn.Sequential(nn.Linear(known, 128), nn.ReLU(), nn.Dropout(0.2))
-            self.reasons = nn.Sequential(*reasons, nn.Linear(128, 1 + sum(sizes)))
+            self.reasons = nn.Sequential(*reasons, nn.Linear(128, judgements))
         self.guided: GuideNet | None = None
         if config.guides:
             self.guided = GuideNet(config.frames)
             wide = 2 * config.guides
-            gathered = nn.Sequential(nn.Linear(self.guided.shot, wide), nn.ReLU(), nn.Dropout(0.2))
-            last = nn.Sequential(nn.Linear(wide, config.guides), nn.ReLU(), nn.Dropout(0.2))
+            gathered = nn.Sequential(nn.Linear(self.guided.shot, wide), nn.ReLU(), nn.Dropout(0.1))
+            last = nn.Sequential(nn.Linear(wide, config.guides), nn.ReLU(), nn.Dropout(0.1))
             self.gathered = nn.Sequential(*gathered, *last)
-            self.judged = nn.Linear(config.guides, 1 + sum(sizes))
+            self.judged = nn.Linear(config.guides, judgements)
             if config.measures:
                 self.reader_guided = nn.Linear(config.guides, config.measures)
             if config.marks:
@@ -149,7 +152,7 @@ class ShotRanker(nn.Module):
         """
         batch, count = times.shape
         if frames is None:
-            nothing = torch.zeros(batch, count, self.described, device=times.device)
+            nothing = torch.zeros((), device=times.device).expand(batch, count, self.described)
             return self.judge(nothing, times, moved, guides, pictures=False)
         flat = frames.flatten(0, 1).contiguous(memory_format=torch.channels_last)
         features = self.backbone(flat).float().view(batch, count, self.described)
@@ -169,8 +172,8 @@ class ShotRanker(nn.Module):
         """
         with torch.autocast(features.device.type, enabled=False):
             average = features[:, :, : self.width].mean(1)
-            fused = fuse(features, times)
-            heads = (self.professional, self.movement, self.scale, self.angle)
+            fused = fuse(features, times) if pictures else features.new_zeros(len(features), 0)
+            heads = (self.professional, self.liked, self.movement, self.scale, self.angle)
             sizes = [head.out_features for head in heads]
             judged = fused.new_zeros(len(fused), sum(sizes))
             if pictures:
@@ -191,18 +194,25 @@ class ShotRanker(nn.Module):
                     told = told + self.reader_guided(maps.shot) * maps.known
                 known = [told]
                 if self.config.marks:
-                    marked = self.marker(features)
+                    if pictures:
+                        marked = self.marker(features)
+                    else:
+                        marked = features.new_zeros(*features.shape[:2], self.config.marks)
                     over_time = fuse(marked, times)
                     if maps is not None and guides is not None:
                         mapped = self.marker_guided(maps.frames)
                         over_time = torch.where(maps.known > 0, fuse(mapped, guides.times), over_time)
                     known.append(over_time)
                 judged = judged + self.reasons(torch.cat(known, 1))
-            professional, movement, scale, angle = judged.split(sizes, 1)
+            professional, liked, movement, scale, angle = judged.split(sizes, 1)
             contrast = functional.normalize(self.contrast(average), dim=1)
-            return Output(
-                professional.squeeze(1), movement, scale, angle, average, contrast, told, marked, mapped
-            )
+            logit, liked = professional.squeeze(1), liked.squeeze(1)
+            classes = (movement, scale, angle)
+            return Output(logit, liked, *classes, average, contrast, told, marked, mapped)
+
+    def margin(self, out: Output) -> Tensor:
+        """What shots are put in order by, [B]: log odds of being good, and how well they would be liked."""
+        return out.logit + self.config.liking * out.liked
 
     def _mapped(self, guides: Guided | None) -> _Mapped | None:
         if self.guided is None or guides is None:

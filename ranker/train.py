@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 from torch import Tensor, nn
 
 from .batches import Batch, batches, count_of
-from .config import PAPER, ModelConfig, Phase, TrainConfig, to_json
+from .config import LIKING, PAPER, ModelConfig, Phase, TrainConfig, to_json
 from .curves import draw_curves
 from .data import Dataset
 from .dictionary import Dictionary, follow, momentum_copy
@@ -31,7 +31,7 @@ from .evaluate import agreement_with_fp32, evaluate, mean
 from .guided import Guided
 from .infer import Ranker, fold_batch_norm
 from .int8 import Ranges, measured_ranges
-from .losses import binary_loss, class_loss, contrast_loss, hint_loss, order_loss
+from .losses import binary_loss, class_loss, contrast_loss, hint_loss, liking_loss
 from .model import OF_GUIDES, ShotRanker, normalised
 from .motion import motions
 from .weights import load_model, save_weights
@@ -87,6 +87,7 @@ def train(
         measures=len(data.hints[0]) if config.hint_weight else 0,
         marks=len(data.frame_hints[0]) if config.hint_weight and data.hints[0] else 0,
         guides=config.guides if data.guided is not None else 0,
+        liking=LIKING if config.order_weight and np.isfinite(data.liked).any() else 0.0,
     )
     if not shape.guides and any(phase.size == 0 for phase in config.phases):
         config = replace(config, phases=tuple(phase for phase in config.phases if phase.size))
@@ -297,7 +298,7 @@ def _losses(
             hint = hint + hint_loss(out.mapped, batch.mapped.to(device))
     order = torch.zeros((), device=device)
     if config.order_weight:
-        order = order_loss(out.logit, batch.opinion.to(device))
+        order = liking_loss(out.liked, batch.liked.to(device))
     if config.contrast_weight == 0 or batch.query is None:
         return binary, classes, torch.zeros((), device=device), hint, order
     with torch.no_grad(), torch.autocast(device.type, torch.bfloat16, enabled=config.autocast):

@@ -10,12 +10,13 @@ import pytest
 
 from vdsl.pipeline.hiding import Scored, _read, best_of_all, told
 
-HEAD = {"seed": 0, "look": 1, "schema": 2}
+HEAD = {"seed": 0, "look": 1, "schema": 3}
 
 
 def shot(name: str, opinions: list[float], choices: list[int], margins: list[float]) -> Scored:
     count = len(opinions)
-    return Scored(name, choices[0], choices, opinions, margins, [0.0] * count, {"geometry score": opinions})
+    flat = [0.0] * count
+    return Scored(name, choices[0], choices, opinions, flat, margins, flat, {"geometry score": opinions})
 
 
 def hundred(best: float, others: float) -> list[float]:
@@ -42,6 +43,7 @@ def test_how_high_picks_come_is_told_of_the_ranker_and_with_the_prior() -> None:
     assert found["agreement"]["geometry score"]["top_1"] == 1.0
     seen = [Scored(**{**asdict(s), "priors": s.opinions}) for s in (shot("good", good, [0, 1], blind),)]
     assert told(seen)["with_prior"]["picks_in_top_10pct"] == 1.0
+    assert found["by_p_b"]["picks_median_rank_pct"] == 100.0  # it says the same of all
     assert told([])["picks"] == 0
 
 

@@ -60,7 +60,8 @@ def test_guides_lie_beside_the_frames_of_their_clips(tmp_path: Path) -> None:
     np.testing.assert_array_equal(some.maps[0], found.maps[0][[2, 0]])
     np.testing.assert_array_equal(some.marks[0], found.marks[0][[2, 0]])
     np.testing.assert_array_equal(data.grade[:4], [0.25, 0, 0.25, 0])
-    np.testing.assert_array_equal(data.opinion[:4], np.float32([0.8, 0, 0.8, np.nan]))
+    assert not np.isfinite(data.liked[1::2]).any()  # nothing is said of bad ones
+    np.testing.assert_array_equal(data.liked[::2], 0.0)  # all good ones are liked alike
 
 
 def test_a_set_in_which_some_have_none_is_taught_without(tmp_path: Path) -> None:
@@ -225,9 +226,16 @@ def test_what_is_liked_better_is_taught_to_come_first(tmp_path: Path) -> None:
     apart = []
     for weight in (0.0, 2.0):
         train(tmp_path / "data", tmp_path / f"{weight}", replace(config, order_weight=weight))
-        margin = Ranker.load(tmp_path / f"{weight}" / "weights", "cpu").score(frames, guides).margin
-        apart.append(margin[::2].min() - margin[1::2].max())
+        ranker = Ranker.load(tmp_path / f"{weight}" / "weights", "cpu")
+        scores = ranker.score(frames, guides)
+        apart.append(scores.margin[::2].min() - scores.margin[1::2].max())
+        assert (ranker.config.liking > 0) == (weight > 0)
+        np.testing.assert_array_equal((scores.margin != scores.logit).all(), weight > 0)
     assert apart[1] > max(1.0, apart[0] + 0.5)
+    # by deviations: a quarter is 1.73 above the mean, the rest 0.58 below
+    np.testing.assert_allclose(
+        Dataset(tmp_path / "data").liked[:4], [1.732, -0.577, -0.577, -0.577], atol=1e-3
+    )
 
 
 def test_clips_without_frames_are_learnt_from_by_their_guides_alone(tmp_path: Path) -> None:

@@ -11,7 +11,7 @@ from ranker_clips import model_config
 
 from ranker.composed import fuse
 from ranker.dictionary import Dictionary, follow, momentum_copy
-from ranker.losses import binary_loss, class_loss, contrast_loss, hint_loss, order_loss
+from ranker.losses import binary_loss, class_loss, contrast_loss, hint_loss, liking_loss
 from ranker.model import ShotRanker, normalised
 
 
@@ -47,29 +47,17 @@ def test_class_loss_sums_the_three_over_known_labels() -> None:
 
 
 def test_hint_loss_is_square_near_and_straight_far_over_what_is_known() -> None:
-    told = torch.tensor([[0.5, 9.0], [3.0, -1.0]])
+    told = torch.tensor([[0.2, 9.0], [3.0, -1.0]])
     hints = torch.tensor([[0.0, math.nan], [0.0, -1.0]])
-    assert float(hint_loss(told, hints)) == pytest.approx((0.125 + 2.5 + 0.0) / 3)
+    near, far = 0.2**2 / 2 / 0.3, 3.0 - 0.3 / 2
+    assert float(hint_loss(told, hints)) == pytest.approx((near + far + 0.0) / 3)
     assert float(hint_loss(told, torch.full((2, 2), math.nan))) == 0.0
 
 
-def test_order_loss_is_of_every_pair_that_is_told_apart() -> None:
-    rng = np.random.default_rng(4)
-    logit = rng.normal(size=12)
-    opinion = rng.uniform(0.6, 1.0, 12)
-    opinion[[1, 5, 7]] = -2.0, 0.0, np.nan
-    pairs = [
-        math.log(1 + math.exp(logit[j] - logit[i]))
-        for i in range(12)
-        for j in range(12)
-        if opinion[i] > 0 and opinion[i] - opinion[j] > 0.03
-    ]
-    got = order_loss(torch.tensor(logit), torch.tensor(opinion))
-    assert float(got) == pytest.approx(np.mean(pairs))
-    assert len(pairs) > 12
-    assert float(order_loss(torch.tensor(logit), torch.tensor(opinion), least=9.0)) == 0.0
-    alone = torch.tensor([-1.0, -2.0, float("nan")])  # among bad ones there is no order
-    assert float(order_loss(torch.zeros(3), alone)) == 0.0
+def test_liking_loss_is_the_same_over_those_that_are_known_to_be_liked() -> None:
+    told, liked = torch.tensor([0.1, -2.0, 1.0]), torch.tensor([0.0, math.nan, -1.0])
+    assert float(liking_loss(told, liked)) == pytest.approx((0.1**2 / 2 / 0.3 + 2.0 - 0.3 / 2) / 2)
+    assert float(liking_loss(told, torch.full((3,), math.nan))) == 0.0
 
 
 def test_contrast_loss_is_the_papers_ratio() -> None:

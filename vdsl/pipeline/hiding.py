@@ -44,7 +44,8 @@ class Scored:
 
     picked: the one the designer likes best; choices: all that may be picked, no two alike, best first;
         opinions: of all, as :func:`vdsl.pipeline.designer.judged`
-    margins: log odds from the pictures alone; priors: what compile adds for the geometry
+    logits: log odds of p_b; margins: what the ranker puts takes in order by; priors: what compile adds to
+        that for the geometry
     geometry: parts of the geometry score, by name
     """
 
@@ -52,6 +53,7 @@ class Scored:
     picked: int
     choices: list[int]
     opinions: list[float]
+    logits: list[float]
     margins: list[float]
     priors: list[float]
     geometry: dict[str, list[float]]
@@ -70,7 +72,7 @@ def hide(
     kept: a file of JSON lines, of these weights alone. Raises OSError.
     """
     watcher = progress or Silence()
-    head = {"seed": seed, "look": LOOK_VERSION, "schema": 2}
+    head = {"seed": seed, "look": LOOK_VERSION, "schema": 3}
     done, numbers = _read(kept, head)
     count = sum(len(s.margins) for s in done)
     watcher.begin("proposals", max(0, proposals - count), "proposals")
@@ -100,10 +102,10 @@ def hide(
 def told(shots: list[Scored]) -> dict[str, Any]:
     """``picks``, ``proposals``, how high the picks are among all, and agreement within each shot.
 
-    ``with_prior``: the same as ``compile`` puts takes in order. As in the paper one in a hundred of all
-    proposals is picked: those the designer likes best, whatever shot they are of. ``best_of_each_shot``: the
-    same of the one that is liked best in every shot, though it may be no good one, by the ranker, and by the
-    designer's own opinion, which no ranker can outdo.
+    ``by_p_b``: the same without how well they would be liked; ``with_prior``: as ``compile`` puts takes in
+    order. As in the paper one in a hundred of all proposals is picked: those the designer likes best,
+    whatever shot they are of. ``best_of_each_shot``: the same of the one that is liked best in every shot,
+    though it may be no good one, by the ranker, and by the designer's own opinion, which no ranker can outdo.
     """
     if not shots:
         return {"picks": 0, "proposals": 0, **hidden(np.zeros(0), np.zeros(0, bool)), "agreement": {}}
@@ -119,6 +121,7 @@ def told(shots: list[Scored]) -> dict[str, Any]:
         "picks": int(best.sum()),
         "proposals": len(margins),
         **hidden(margins, best),
+        "by_p_b": hidden(np.concatenate([s.logits for s in shots]), best),
         "with_prior": hidden(by["ranker with prior"], best),
         "best_of_each_shot": {"ranker": hidden(margins, picked), "designer": hidden(opinions, picked)},
         "agreement": agreement(by, picked, names),
@@ -154,6 +157,7 @@ def _scored(
     ranker: Ranker,
     camerawork: Camerawork,
 ) -> Scored:
+    logits: list[float] = []
     margins: list[float] = []
     size = ranker.config.size
 
@@ -167,13 +171,15 @@ def _scored(
         )
 
     for _, seen in one_ahead(drawn, range(0, len(grid.cameras), _AT_ONCE)):
-        margins += [round(float(m), 5) for m in ranker.score(seen.frames, seen.guides).margin]
+        scores = ranker.score(seen.frames, seen.guides)
+        logits += [round(float(m), 5) for m in scores.logit]
+        margins += [round(float(m), 5) for m in scores.margin]
     measures = {k: np.array([c.measures[k] for c in grid.cameras]) for k in grid.cameras[0].measures}
     alone = {k: [round(float(v), 4) for v in values] for k, values in parts(measures).items()}
     alone["geometry score"] = [round(geometry_score(c.measures), 4) for c in grid.cameras]
     priors = [round(float(prior(c.measures)), 4) for c in grid.cameras]
     opinions = [round(float(o), 5) for o in judged(grid.cameras)]
-    return Scored(name, choices[0], choices, opinions, margins, priors, alone)
+    return Scored(name, choices[0], choices, opinions, logits, margins, priors, alone)
 
 
 def _read(kept: Path, head: dict[str, Any]) -> tuple[list[Scored], set[str]]:

@@ -38,6 +38,18 @@ def test_differences_of_two_takes_add_up_nearly_to_that_of_their_scores() -> Non
     assert judged["foreground"] == pytest.approx(10.0 * gains["foreground"])
 
 
+def test_a_fault_that_only_one_of_two_takes_has_counts_by_itself() -> None:
+    other = BEST | {"lead_room": -0.2, "foreground": 0.1, "size_error": 0.3, "thirds_error": 0.05}
+    plain, strict = (advantages(BEST, other, (0.0, 0.0), 10.0, flaw) for flaw in (0.0, 3.0))
+    more = {name: strict[name] - plain.get(name, 0.0) for name in strict}
+    assert {name for name, gain in more.items() if gain} == {"lead_room", "visibility", "framing"}
+    assert [more[name] for name in ("lead_room", "visibility", "framing")] == pytest.approx([3.0] * 3)
+    back = advantages(other, BEST, (0.0, 0.0), 10.0, 3.0)
+    assert back["framing"] == pytest.approx(-3.0)
+    assert compared("framing", BEST, other, True, "take 2") == "better framed than take 2"
+    assert advantages(other, other | {"clearance": 0.9}, (0.0, 0.0), 10.0, 3.0)["framing"] == 0.0
+
+
 def test_what_is_said_of_two_takes_quotes_both() -> None:
     other = BEST | {"lead_room": -0.09, "speed": 2.0}
     assert (

@@ -5,9 +5,12 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from vdsl.cinema.flaws import CRITERIA, LEAST, MOST, flaws
 from vdsl.cinema.measures import MEASURES
+from vdsl.cinema.score import FLAW
 from vdsl.cinema.track import CameraTrack, look_at_rotation
-from vdsl.pipeline.designer import COUNTS, CRITERIA, LEAST, MOST, appeal, faults, judged, picks
+from vdsl.pipeline.designer import COUNTS, appeal, judged, picks
+from vdsl.pipeline.judging import prior
 from vdsl.propose.types import CameraProposal
 
 GOOD = dict.fromkeys(MEASURES, 0.0) | {
@@ -31,11 +34,11 @@ def camera(index: int, azimuth: float = 0.0, **measures: float) -> CameraProposa
 def test_every_criterion_has_faults_and_counts() -> None:
     assert {c for c, _, _ in (*LEAST, *MOST)} == set(CRITERIA)
     assert sum(COUNTS.values()) == pytest.approx(1.0)
-    assert not any(faults(GOOD).values())
+    assert not any(flaws(GOOD).values())
     for criterion, name, limit in LEAST:
-        assert faults(GOOD | {name: limit - 0.01})[criterion], name
+        assert flaws(GOOD | {name: limit - 0.01})[criterion], name
     for criterion, name, limit in MOST:
-        assert faults(GOOD | {name: limit * 1.05})[criterion], name
+        assert flaws(GOOD | {name: limit * 1.05})[criterion], name
 
 
 WORSE = {
@@ -69,3 +72,10 @@ def test_faulty_takes_are_never_picked_and_no_two_look_alike() -> None:
     opinion = judged(cameras)
     assert (opinion[[3, 4]] < 0).all()
     assert (opinion[[0, 1, 2]] > 0).all()
+
+
+def test_a_fault_counts_in_what_the_geometry_adds_once_a_criterion() -> None:
+    best = prior(GOOD)
+    assert prior(GOOD | {"size_error": 0.3}) == pytest.approx(best - FLAW)  # in no part of the geometry score
+    assert prior(GOOD | {"size_error": 0.3, "view": 0.2}) == pytest.approx(best - FLAW)
+    assert prior(GOOD | {"size_error": 0.3, "ends_visible": 0.2}) == pytest.approx(best - 2 * FLAW)

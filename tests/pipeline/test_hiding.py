@@ -10,7 +10,7 @@ import pytest
 
 from vdsl.pipeline.hiding import Scored, _read, best_of_all, told
 
-HEAD = {"seed": 0, "look": 1, "schema": 3}
+HEAD = {"seed": 0, "look": 1, "schema": 4}
 
 
 def shot(name: str, opinions: list[float], choices: list[int], margins: list[float]) -> Scored:

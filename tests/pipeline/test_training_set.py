@@ -15,6 +15,7 @@ import pytest
 
 from ranker.data import MIRRORED, Dataset
 from ranker.errors import RankerError
+from vdsl.cinema.flaws import LEAST, MOST, flaws
 from vdsl.cinema.subject import Subject
 from vdsl.cinema.track import CameraTrack, camera_axes, look_at_rotation
 from vdsl.lang import Report, Source
@@ -24,7 +25,7 @@ from vdsl.pipeline.acts import stage_acts
 from vdsl.pipeline.casting import Scene, Troupe, split_of_story
 from vdsl.pipeline.clips import BAR, Clip, clips_of, moves
 from vdsl.pipeline.dataset import _Filmed, generate
-from vdsl.pipeline.designer import LEAST, MOST, faults, judged, picks
+from vdsl.pipeline.designer import judged, picks
 from vdsl.pipeline.hints import frame_hints_of, hints_of
 from vdsl.pipeline.labels import WORDS, classes
 from vdsl.pipeline.perturb import mistyped, perturbed
@@ -216,7 +217,7 @@ def test_what_is_not_drawn_is_every_other_proposal_as_the_designer_says(scenes: 
             thought = judged([clip.camera])[0]
             assert clip.opinion == pytest.approx(thought)
             assert (clip.kind == "designer") == (thought >= BAR)
-            wrong = faults(clip.camera.measures, seen=True)
+            wrong = flaws(clip.camera.measures, seen=True)
             shows = any(bool(f) for f in wrong.values()) or 0 <= thought < BAR * 0.92
             assert clip.doubtful == (thought < BAR and not shows)
         spoilt = [clip for clip in found if clip.bare and clip.kind in ("perturbed", "mistyped")]
@@ -234,9 +235,9 @@ def test_no_picture_shows_what_was_asked_for_or_a_wall_behind_the_camera(scenes:
     good = grid.cameras[picks(grid.cameras, 1)[0]].measures
     for name, value in (("clearance", 0.1), ("size_error", 0.3), ("view", 0.2)):
         spoilt = good | {name: value}
-        assert any(bool(f) for f in faults(spoilt).values())
-        assert not any(bool(f) for f in faults(spoilt, seen=True).values())
-    assert any(bool(f) for f in faults(good | {"head_cut": 0.5}, seen=True).values())
+        assert any(bool(f) for f in flaws(spoilt).values())
+        assert not any(bool(f) for f in flaws(spoilt, seen=True).values())
+    assert any(bool(f) for f in flaws(good | {"head_cut": 0.5}, seen=True).values())
 
 
 def test_half_of_the_negatives_are_proposals_as_they_come(scenes: list[Scene]) -> None:

@@ -27,6 +27,9 @@ PENALTIES = {"backdrop_gap": 0.5, "foreground": 0.6, "empty": 0.3, "head_cropped
 #: How much a full point of the geometry score moves the odds of a take, in logits: as a prior. By this much
 #: designer's picks that are hidden among proposals come higher than by the pictures or the geometry alone.
 PRIOR = 30.0
+#: And by how much a fault in a criterion (:mod:`vdsl.cinema.flaws`) lowers it: what is plainly amiss is not
+#: made up for by what else is good.
+FLAW = 3.0
 
 
 def parts(measures: Mapping[str, NDArray[np.float64] | float]) -> dict[str, NDArray[np.float64]]:

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+from .flaws import CRITERIA, flaws
 from .score import PENALTIES, WEIGHTS, geometry_score, parts
 
 Measures = Mapping[str, float]
@@ -59,6 +60,7 @@ NOTES = {
 _COMPARED = {
     "visibility": ("less hidden", "more hidden", "visibility"),
     "in_frame": ("the subject stays longer in the frame", "the subject leaves the frame more", "in_frame"),
+    "framing": ("better framed", "not so well framed", "in_frame"),
     "face": ("more of the face", "less of the face", "face"),
     "interest": ("more of what the line is about", "less of what the line is about", "interest"),
     "size": ("the size holds better", "the size drifts more", "size_drift"),
@@ -110,11 +112,16 @@ def penalties(measures: Measures) -> dict[str, float]:
 
 
 def advantages(
-    measures: Measures, other: Measures, logits: tuple[float, float] | None = None, scale: float = 1.0
+    measures: Measures,
+    other: Measures,
+    logits: tuple[float, float] | None = None,
+    scale: float = 1.0,
+    flaw: float = 0.0,
 ) -> dict[str, float]:
     """By how much each part puts one take before another, largest first; negative where it is behind.
 
-    In points of the geometry score times ``scale``; logits: what the discriminator gives both
+    In points of the geometry score times ``scale``, and ``flaw`` for every criterion in which but one of them
+    has a fault; logits: what the discriminator gives both
     """
     a, b = terms(measures), terms(other)
     pa, pb = penalties(measures), penalties(other)
@@ -122,6 +129,9 @@ def advantages(
     total = max((sum(t.points for t in a) + sum(t.points for t in b)) / 2, 1e-9)
     out = {x.part: scale * (x.points - y.points) * kept / total for x, y in zip(a, b, strict=True)}
     out |= {name: scale * kept * (pa[name] - pb[name]) / max((pa[name] + pb[name]) / 2, 1e-9) for name in pa}
+    here, there = flaws(measures), flaws(other)
+    for name in CRITERIA if flaw else ():
+        out[name] = out.get(name, 0.0) + flaw * (float(there[name]) - float(here[name]))
     if logits is not None:
         out["logit"] = logits[0] - logits[1]
     return dict(sorted(out.items(), key=lambda item: -item[1]))

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from ..cinema.score import PRIOR
+from ..cinema.score import FLAW, PRIOR
 from ..cinema.telling import advantages, compared, faults
 
 _ORDINALS = ("first", "second", "third", "fourth", "fifth", "sixth", "seventh", "eighth", "ninth", "tenth")
@@ -34,7 +34,7 @@ def gains_of(take: TakeFacts, other: TakeFacts) -> dict[str, float]:
     """Of each part, in log odds where the discriminator judged, in points of the geometry score else."""
     if take.logit is None or other.logit is None:
         return advantages(take.measures, other.measures)
-    return advantages(take.measures, other.measures, (take.logit, other.logit), PRIOR)
+    return advantages(take.measures, other.measures, (take.logit, other.logit), PRIOR, FLAW)
 
 
 def phrases_of(

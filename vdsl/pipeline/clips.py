@@ -12,6 +12,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from ..cinema.flaws import flaws
 from ..cinema.track import CameraTrack
 from ..lang.ir import Shot
 from ..propose.cameras import measured_anew
@@ -19,7 +20,7 @@ from ..propose.promise import achieved
 from ..propose.subjects import subject_of
 from ..propose.types import CameraProposal, ProposalGrid
 from .casting import Scene
-from .designer import faults, judged, picks
+from .designer import judged, picks
 from .filming import segment_frames
 from .guides import About, about_of
 from .hints import frame_hints_of
@@ -117,7 +118,7 @@ def _passed_over(
     scene: Scene, shot: Shot, grid: ProposalGrid, camera: CameraProposal, opinion: float
 ) -> Clip:
     """A proposal that the designer left."""
-    wrong = sum(bool(found) for found in faults(camera.measures).values())
+    wrong = sum(bool(found) for found in flaws(camera.measures).values())
     strength = min(max(wrong, 1) * _A_FAULT, 1.0)
     words = _read(scene, shot, grid, camera)
     return Clip(camera, "passed-over", strength, opinion, words, doubtful=not _seen(camera, opinion))
@@ -133,7 +134,7 @@ def _bare(scene: Scene, shot: Shot, grid: ProposalGrid, camera: CameraProposal, 
 
 def _seen(camera: CameraProposal, opinion: float) -> bool:
     """Whether one can see what is wrong with a take: it has little appeal, or a fault that shows."""
-    return opinion >= 0 or any(bool(found) for found in faults(camera.measures, seen=True).values())
+    return opinion >= 0 or any(bool(found) for found in flaws(camera.measures, seen=True).values())
 
 
 def _spoilt(

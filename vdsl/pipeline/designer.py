@@ -9,43 +9,17 @@ other than :mod:`vdsl.cinema.score`, which is a sum.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ..cinema.flaws import Measures, flaws
 from ..propose.types import CameraProposal
 from .selection import alike, ranked
 
 Array = NDArray[np.float64]
-Measures = Mapping[str, NDArray[np.float64] | float]
 
-#: What is a fault: (criterion, measure, the least or the most of it that will do).
-LEAST = (
-    ("visibility", "visibility", 0.95),
-    ("visibility", "head_visible", 0.85),
-    ("visibility", "ends_visible", 0.8),
-    ("visibility", "face", -0.6),
-    ("framing", "in_frame", 0.95),
-    ("framing", "view", 0.8),
-    ("lead_room", "lead_room", -0.12),
-    ("clearance", "clearance", 0.3),
-)
-MOST = (
-    ("visibility", "foreground", 0.05),
-    ("visibility", "backdrop_gap", 0.03),
-    ("framing", "head_cut", 0.03),
-    ("framing", "feet_cut", 0.03),
-    ("framing", "size_error", 0.1),
-    ("framing", "empty", 0.25),
-    ("headroom", "headroom_error", 0.14),
-    ("thirds", "thirds_error", 0.2),
-    ("steadiness", "jerk", 8.0),
-    ("steadiness", "speed", 3.5),
-)
-#: Measures of which no picture tells: how near the walls around the camera are, and whether size and view are
-#: those that were asked for.
-UNSEEN = ("clearance", "size_error", "view")
 #: How much each criterion counts in the order of what has no fault; variety comes from :func:`picks`.
 COUNTS = {
     "visibility": 0.24,
@@ -56,25 +30,7 @@ COUNTS = {
     "clearance": 0.08,
     "steadiness": 0.12,
 }
-CRITERIA = tuple(COUNTS)
 _LITTLE = 0.02  # the worst a criterion is taken for
-
-
-def faults(measures: Measures, seen: bool = False) -> dict[str, NDArray[np.bool_]]:
-    """By criterion, which of the takes [P] have a fault in it. seen: only those that a picture can show"""
-    found = faults_by_measure(measures)
-    out = {name: np.zeros(np.shape(measures["visibility"]), bool) for name in CRITERIA}
-    for criterion, name, _ in (*LEAST, *MOST):
-        if not (seen and name in UNSEEN):
-            out[criterion] = out[criterion] | found[name]
-    return out
-
-
-def faults_by_measure(measures: Measures) -> dict[str, NDArray[np.bool_]]:
-    """By the name of a measure, which of the takes [P] have a fault in it."""
-    m = {k: np.asarray(v, float) for k, v in measures.items()}
-    least = {name: m[name] < bound for _, name, bound in LEAST}
-    return least | {name: m[name] > bound for _, name, bound in MOST}
 
 
 def qualities(measures: Measures) -> dict[str, Array]:
@@ -95,7 +51,7 @@ def qualities(measures: Measures) -> dict[str, Array]:
 def appeal(measures: Measures) -> Array:
     """How well takes [P] are composed and shot, 0..1; says nothing of their faults."""
     found = qualities(measures)
-    logs = sum(COUNTS[k] * np.log(np.maximum(found[k], _LITTLE)) for k in CRITERIA)
+    logs = sum(COUNTS[k] * np.log(np.maximum(found[k], _LITTLE)) for k in COUNTS)
     return np.asarray(np.exp(logs))
 
 
@@ -104,7 +60,7 @@ def judged(cameras: Sequence[CameraProposal]) -> Array:
     if not cameras:
         return np.zeros(0)
     measures = {k: np.array([c.measures[k] for c in cameras], float) for k in cameras[0].measures}
-    wrong = np.sum(list(faults(measures).values()), axis=0)
+    wrong = np.sum(list(flaws(measures).values()), axis=0)
     return np.asarray(np.where(wrong > 0, appeal(measures) - 1.0 - wrong, appeal(measures)))
 
 

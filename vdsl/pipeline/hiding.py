@@ -72,7 +72,7 @@ def hide(
     kept: a file of JSON lines, of these weights alone. Raises OSError.
     """
     watcher = progress or Silence()
-    head = {"seed": seed, "look": LOOK_VERSION, "schema": 3}
+    head = {"seed": seed, "look": LOOK_VERSION, "schema": 4}
     done, numbers = _read(kept, head)
     count = sum(len(s.margins) for s in done)
     watcher.begin("proposals", max(0, proposals - count), "proposals")

@@ -9,10 +9,10 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from ..cinema.flaws import flaws_by_measure
 from ..cinema.subject import Subject
 from ..cinema.track import camera_axes, project
 from ..propose.types import CameraProposal
-from .designer import faults_by_measure
 
 #: Measures that are heavy-tailed: their square root is taught.
 _LONG = ("jerk", "speed", "angular_speed")
@@ -29,7 +29,7 @@ def hints_of(camera: CameraProposal) -> dict[str, float]:
     """
     track = camera.track
     found = {k: float(v) for k, v in camera.measures.items()}
-    found |= {f"fault_{k}": float(v) for k, v in faults_by_measure(camera.measures).items()}
+    found |= {f"fault_{k}": float(v) for k, v in flaws_by_measure(camera.measures).items()}
     found |= {k: max(found[k], 0.0) ** 0.5 for k in _LONG if k in found}
     distance = np.maximum(np.linalg.norm(track.look_at - track.position, axis=-1), 0.2)
     way = camera_axes(track.rotation[0]) @ (track.position[-1] - track.position[0]) / distance[0]

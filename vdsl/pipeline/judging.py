@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from ..cinema.score import PRIOR, geometry_score
+from ..cinema.flaws import flaws
+from ..cinema.score import FLAW, PRIOR, geometry_score
 from ..propose.types import CameraProposal
 from .filming import JUDGE_SIZE, SEGMENTS, Seen
 
@@ -65,7 +66,8 @@ _PRIOR_MIDDLE = 0.75
 
 def prior(measures: Mapping[str, float]) -> float:
     """What the geometry adds to the discriminator's log odds."""
-    return PRIOR * (geometry_score(measures) - _PRIOR_MIDDLE)
+    wrong = sum(bool(found) for found in flaws(measures).values())
+    return PRIOR * (geometry_score(measures) - _PRIOR_MIDDLE) - FLAW * wrong
 
 
 class DiscriminatorJudge:
@@ -108,5 +110,5 @@ class DiscriminatorJudge:
         return np.asarray(1.0 / (1.0 + np.exp(-(logit + priors))))
 
     def logit(self, camera: CameraProposal, score: float) -> float | None:
-        score = min(max(score, 1e-15), 1.0 - 1e-15)
+        score = min(max(score, 1e-300), 1.0 - 1e-15)
         return math.log(score / (1.0 - score)) - prior(camera.measures)

@@ -137,6 +137,7 @@ def start(device: str = "auto") -> Backend:
                     log_level=ti.ERROR,
                     enable_fallback=False,
                 )
+                ti.sync()  # else the first kernel finishes the start, and fails on any other thread
         except Exception as error:  # Taichi raises what it likes when a driver is missing
             if name != wanted[-1]:
                 continue

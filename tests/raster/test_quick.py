@@ -49,3 +49,30 @@ def test_a_first_picture_with_nothing_kept_is_soon_there(tmp_path: Path) -> None
     )
     # of processor time: 9 to 11 s; with Taichi's own optimisations it was 42
     assert float(done.stdout.split()[-1]) < 25
+
+
+ELSEWHERE = """
+import threading
+import taichi as ti
+from runtime.raster.device import start
+
+@ti.kernel
+def twice(x: float) -> float:
+    return 2 * x
+
+start("cpu")
+found = []
+other = threading.Thread(target=lambda: found.append(twice(2.0)))
+other.start()
+other.join()
+assert found == [4.0], found
+"""
+
+
+def test_the_first_kernel_may_run_on_another_thread_than_the_one_that_started(tmp_path: Path) -> None:
+    script = tmp_path / "elsewhere.py"  # kernels are read from a file
+    script.write_text(ELSEWHERE, "utf-8")
+    root = str(Path(__file__).parents[2])
+    subprocess.run(
+        [sys.executable, str(script)], env=os.environ | {"PYTHONPATH": root}, check=True, timeout=300
+    )

@@ -65,7 +65,7 @@ _PRIOR_MIDDLE = 0.75
 
 
 def prior(measures: Mapping[str, float]) -> float:
-    """What the geometry adds to the discriminator's log odds."""
+    """What the geometry adds to the discriminator's log odds, and its faults take off."""
     wrong = sum(bool(found) for found in flaws(measures).values())
     return PRIOR * (geometry_score(measures) - _PRIOR_MIDDLE) - FLAW * wrong
 

@@ -82,7 +82,7 @@ class TrainConfig:
         how good they are
     smoothing: label smoothing; held_out: share of the clips, by whole groups, kept for evaluation
     calibration: batches over which batch-norm statistics are taken anew at full size at the end
-    autocast: compute in bfloat16 where the network allows; augment: mirror, and vary the light
+    autocast: compute in bfloat16 where network and machine allow; augment: mirror, and vary the light
     watched: held-out clips looked at after every epoch, for the curves
     backbone, size, inner: of the model, at inference
     """

@@ -1,9 +1,9 @@
 """Scores for shot proposals, as fast as the machine allows.
 
-The backbone runs with batch norm folded into the convolutions, channels last: in eight-bit integers where
-the processor is good at that and the weights come with what it needs, else in bfloat16, on a CPU as a frozen
-graph. Fusion and heads stay in float32. Pictures go through in batches of one fixed size, the last one
-padded, so that a shot's score does not depend on its company.
+The backbone runs with batch norm folded into the convolutions, channels last, in the numbers that are
+quickest here (:mod:`ranker.engine`): whole numbers, or bfloat16, on a CPU as a frozen graph, or float32.
+Fusion and heads stay in float32. Pictures go through in batches of one fixed size, the last one padded, so
+that a shot's score does not depend on its company.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from torch.nn.utils.fusion import fuse_conv_bn_eval
 
 from .config import ModelConfig
 from .data import scaled
-from .engine import has_vnni
+from .engine import HIGHEST, engine_for
 from .errors import RankerError
 from .guided import Guided
 from .guides import Guides
@@ -61,7 +61,8 @@ class Scores:
 class Ranker:
     """A loaded ranker; ``config`` holds its words. Make one with :meth:`load` and keep it.
 
-    ranges: of the network's outputs, which computing in eight bits needs; engine: ``int8`` or ``bfloat16``
+    ranges: of the network's outputs, which computing in whole numbers needs; engine: in which numbers its
+        frame encoder computes, as :func:`ranker.engine.engine_for` names them
     """
 
     def __init__(self, model: ShotRanker, device: str = "auto", ranges: Ranges | None = None) -> None:
@@ -73,9 +74,8 @@ class Ranker:
         self._model = model.eval().requires_grad_(False).to(self.device)
         self._times = frame_times(self.config).to(self.device)
         folded = fold_batch_norm(self._model.backbone)
-        eight = self._eight(folded, ranges)
-        self.engine = "bfloat16" if eight is None else "int8"
-        self._features = eight or self._sixteen(folded)
+        self.engine = engine_for(self.device.type, ranges is not None)
+        self._features = self._encoder(folded, ranges)
 
     @classmethod
     def load(cls, path: str | Path | None = None, device: str = "auto") -> Ranker:
@@ -160,22 +160,24 @@ class Ranker:
         told = (out.logit.sigmoid(), out.logit, self._model.margin(out), *classes, out.feature)
         return Scores(*(values.float().cpu().numpy() for values in told))
 
-    def _eight(self, folded: nn.Module, ranges: Ranges | None) -> Encoder | None:
-        """The frame encoder in eight bits, None where that cannot be or would not be quicker."""
-        if ranges is None or self.device.type != "cpu" or not has_vnni():
-            return None
-        try:
-            return Int8Backbone(folded, ranges, self._batch * self.config.frames, self.config.inner)
-        except (AttributeError, RuntimeError):  # a torch without the operators
-            return None
+    def _encoder(self, folded: nn.Module, ranges: Ranges | None) -> Encoder:
+        """The frame encoder in the numbers of the engine, or of the next best where this torch lacks them."""
+        if ranges is not None and self.engine in HIGHEST:
+            room, side = self._batch * self.config.frames, self.config.inner
+            try:
+                return Int8Backbone(folded, ranges, room, side, HIGHEST[self.engine])
+            except (AttributeError, RuntimeError):  # a torch without the operators
+                self.engine = engine_for(self.device.type, False)
+        return self._floating(folded, torch.bfloat16 if self.engine == "bfloat16" else torch.float32)
 
-    def _sixteen(self, folded: nn.Module) -> Encoder:
-        """The frame encoder in bfloat16."""
-        backbone = folded.to(torch.bfloat16).to(memory_format=torch.channels_last)  # type: ignore[call-overload]
-        network = self._frozen(backbone) if self.device.type == "cpu" else backbone
+    def _floating(self, folded: nn.Module, kind: torch.dtype) -> Encoder:
+        """The frame encoder in floating point."""
+        backbone = folded.to(kind).to(memory_format=torch.channels_last)  # type: ignore[call-overload]
+        frozen = self.device.type == "cpu" and kind is torch.bfloat16  # float32 gains nothing by it
+        network = self._frozen(backbone) if frozen else backbone
 
         def encode(pictures: Tensor) -> Tensor:
-            flat = normalised(pictures).to(torch.bfloat16)
+            flat = normalised(pictures).to(kind)
             return network(flat.contiguous(memory_format=torch.channels_last)).float()
 
         return encode

@@ -1,9 +1,10 @@
-"""The frame encoder in whole numbers of eight bits, for processors that multiply those quickest (VNNI).
+"""The frame encoder in whole numbers of eight bits, for processors that multiply those quickest.
 
 Assumes a ResNet whose batch norms are folded into its convolutions, and ranges of what comes out of these,
 measured on training clips (:func:`measured_ranges`). Weights get a scale for each output channel, what
 passes between layers one for each layer; sums are exact, so a picture's features are the same to the bit in
-any company. Only torch's own operators are used.
+any company. Where products are summed in pairs of sixteen bits (AVX2), they are only if weights have seven
+bits. Only torch's own operators are used.
 """
 
 from __future__ import annotations
@@ -129,10 +130,12 @@ class _Packed(NamedTuple):
 class Int8Backbone:
     """Features of pictures: uint8 [N, S, S, 3] sRGB -> float32 [N, D], for one fixed N.
 
-    Raises RuntimeError or AttributeError where this torch lacks the operators.
+    highest: the largest weight, in whole numbers; see :data:`ranker.engine.HIGHEST`. Raises RuntimeError or
+    AttributeError where this torch lacks the operators.
     """
 
-    def __init__(self, folded: nn.Module, ranges: Ranges, count: int, size: int) -> None:
+    def __init__(self, folded: nn.Module, ranges: Ranges, count: int, size: int, highest: int = 127) -> None:
+        self._highest = highest
         self._folded, self._ranges, self._pool = folded, ranges, folded.get_submodule("avgpool")
         self._packed: dict[str, _Packed] = {}  # by the first pass: what comes in is known only on the way
         self._border = torch.tensor([round(255 * m) for m in PIXEL_MEAN], dtype=torch.uint8)
@@ -168,8 +171,8 @@ class Int8Backbone:
         mean, std = (255 * torch.tensor(v)[:, None, None] for v in (PIXEL_MEAN, PIXEL_STD))
         if name == "conv1":  # pixels come as they are, with their border
             weight, padding = weight / std, [0, 0]
-        scales = weight.abs().amax((1, 2, 3)).clamp_min(1e-12) / 127
-        whole = (weight / scales[:, None, None, None]).round().clamp(-127, 127)
+        scales = weight.abs().amax((1, 2, 3)).clamp_min(1e-12) / self._highest
+        whole = (weight / scales[:, None, None, None]).round().clamp(-self._highest, self._highest)
         if name == "conv1":  # what weights lose by rounding must not count with the mean
             bias = bias - (whole * mean).sum((1, 2, 3)) * scales
         place = (list(conv.stride), padding, list(conv.dilation), conv.groups)

@@ -21,6 +21,7 @@ from torch.nn import functional
 
 from .composed import fuse
 from .config import ModelConfig
+from .engine import quick_bfloat16
 from .guided import Guided, GuideNet
 from .guides import pairs
 from .motion import NUMBERS
@@ -217,7 +218,8 @@ class ShotRanker(nn.Module):
     def _mapped(self, guides: Guided | None) -> _Mapped | None:
         if self.guided is None or guides is None:
             return None
-        with torch.autocast(guides.maps.device.type, torch.bfloat16, enabled=self.training):
+        kind = guides.maps.device.type
+        with torch.autocast(kind, torch.bfloat16, enabled=self.training and quick_bfloat16(kind)):
             frames, shot = self.guided(guides)
         return _Mapped(frames, self.gathered(shot), guides.known.float().unsqueeze(1))
 

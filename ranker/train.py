@@ -26,6 +26,7 @@ from .config import LIKING, PAPER, ModelConfig, Phase, TrainConfig, to_json
 from .curves import draw_curves
 from .data import Dataset
 from .dictionary import Dictionary, follow, momentum_copy
+from .engine import quick_bfloat16
 from .errors import RankerError
 from .evaluate import agreement_with_fp32, evaluate, mean
 from .guided import Guided
@@ -229,7 +230,7 @@ def watch(
     model.eval()
     right: list[NDArray[np.float64]] = []
     for batch in batches(data, some, phase, plain, -1, moved) if len(some) else ():
-        with torch.autocast(device.type, torch.bfloat16, enabled=config.autocast):
+        with _autocast(config, device):
             out = model(*_seen(batch, device))
         good, classes = batch.professional.numpy() > 0.5, batch.classes.numpy()
         found = np.stack([p.argmax(1).cpu().numpy() for p in (out.movement, out.scale, out.angle)], 1)
@@ -259,12 +260,18 @@ def calibrate(
     for count, batch in enumerate(batches(data, clips, phase, config, epoch=-1)):
         if count == config.calibration:
             break
-        with torch.autocast(device.type, torch.bfloat16, enabled=config.autocast):
+        with _autocast(config, device):
             assert batch.query is not None
             model(normalised(batch.query.to(device)), batch.query_times.to(device))
     for norm, momentum in zip(norms, kept, strict=True):
         norm.momentum = momentum
     model.eval()
+
+
+def _autocast(config: TrainConfig, device: torch.device) -> torch.autocast:
+    """Compute in bfloat16, if that is wanted and the machine is not slower by it."""
+    wanted = config.autocast and quick_bfloat16(device.type)
+    return torch.autocast(device.type, torch.bfloat16, enabled=wanted)
 
 
 def _seen(batch: Batch, device: torch.device) -> tuple[Tensor | None, Tensor, Tensor | None, Guided | None]:
@@ -284,7 +291,7 @@ def _losses(
     device: torch.device,
 ) -> tuple[Tensor, Tensor, Tensor, Tensor, Tensor]:
     """L_b, L_c, L_q, L_h and L_o of a batch; its keys go into the dictionary afterwards."""
-    with torch.autocast(device.type, torch.bfloat16, enabled=config.autocast):
+    with _autocast(config, device):
         out = model(*_seen(batch, device))
     binary = binary_loss(out.logit, batch.professional.to(device), config.smoothing)
     labels = tuple(batch.classes.to(device).unbind(1))
@@ -301,7 +308,7 @@ def _losses(
         order = liking_loss(out.liked, batch.liked.to(device))
     if config.contrast_weight == 0 or batch.query is None:
         return binary, classes, torch.zeros((), device=device), hint, order
-    with torch.no_grad(), torch.autocast(device.type, torch.bfloat16, enabled=config.autocast):
+    with torch.no_grad(), _autocast(config, device):
         key = keys(normalised(batch.key.to(device)), batch.key_times.to(device)).contrast
     clips = batch.clips.to(device)
     others = dictionary.vectors.clone()

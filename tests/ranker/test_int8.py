@@ -11,7 +11,7 @@ import torch
 from ranker_clips import FRAMES, SIZE, clip, model_config
 
 from ranker import engine
-from ranker.engine import INT8, engine_of, has_vnni
+from ranker.engine import HIGHEST, INT8, engine_for, engine_of, quick_bfloat16
 from ranker.errors import RankerError
 from ranker.evaluate import spearman
 from ranker.infer import Ranker, fold_batch_norm
@@ -19,8 +19,33 @@ from ranker.int8 import Int8Backbone, Ranges, layers_of, least_loss, measured_ra
 from ranker.model import ShotRanker, frame_times, normalised
 from ranker.weights import load_card, load_model, load_ranges, save_weights
 
-needs_vnni = pytest.mark.skipif(not has_vnni(), reason="the processor has no eight-bit products")
 BACKBONES = ("resnet18", "resnet50")
+#: A processor that says so.
+CPUINFO = {
+    "int8": "fpu avx2 avx512bw avx512_vnni",
+    "int7": "fpu avx2",
+    "bfloat16": "fpu avx512bw",
+    "float32": "fpu sse2",
+}
+#: What this one can do: sums in pairs are as right on those that need none.
+HERE = engine_for("cpu", True)
+CAN = {"int8": ("int8",), "int7": ("int8", "int7")}
+
+
+@pytest.fixture(params=list(HIGHEST))
+def whole(request: pytest.FixtureRequest, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> str:
+    """An engine in whole numbers, as if the machine were one where it is the quickest."""
+    name: str = request.param
+    if HERE not in CAN[name]:
+        pytest.skip(f"the processor cannot compute as {name} does")
+    pretend(name, tmp_path, monkeypatch)
+    return name
+
+
+def pretend(name: str, folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    path = folder / "cpuinfo"
+    path.write_text(f"processor\t: 0\nflags\t\t: {CPUINFO[name]}\n")
+    monkeypatch.setattr(engine, "_CPU", path)
 
 
 def clips(count: int, seed: int) -> np.ndarray:
@@ -55,21 +80,19 @@ def weights(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
-@needs_vnni
-def test_the_order_of_shots_is_that_of_float32() -> None:
+def test_the_order_of_shots_is_that_of_float32(whole: str) -> None:
     model, frames = network("resnet18"), clips(40, 9)
     with torch.no_grad():
         exact = model(normalised(torch.from_numpy(frames)), frame_times(model.config).expand(40, -1))
     ranker = Ranker(model, "cpu", ranges_of(model))
-    assert ranker.engine == "int8"
+    assert ranker.engine == whole
     got = ranker.score(frames)
     order = spearman(exact.logit.numpy(), got.margin)
     assert order is not None
     assert order > 0.9  # of heads that never learnt to tell these shots apart
 
 
-@needs_vnni
-def test_the_shipped_weights_keep_their_features() -> None:
+def test_the_shipped_weights_keep_their_features(whole: str) -> None:
     """One shot at full size: a window that goes along a soft picture with a figure in it."""
     model, card = load_model()
     size = card.model.size
@@ -83,12 +106,11 @@ def test_the_shipped_weights_keep_their_features() -> None:
     folded = fold_batch_norm(model.backbone)
     with torch.no_grad():
         exact = folded(normalised(torch.from_numpy(frames)))
-    got = Int8Backbone(folded, ranges, len(frames), size)(torch.from_numpy(frames))
+    got = Int8Backbone(folded, ranges, len(frames), size, HIGHEST[whole])(torch.from_numpy(frames))
     assert float((got - exact).norm()) < 0.08 * float(exact.norm())
 
 
-@needs_vnni
-def test_scores_in_eight_bits_do_not_hang_on_the_batch(weights: Path) -> None:
+def test_scores_in_whole_numbers_do_not_hang_on_the_batch(weights: Path, whole: str) -> None:
     ranker, frames = Ranker.load(weights, "cpu"), clips(5, 7)
     together = ranker.score(frames)
     for i in range(len(frames)):
@@ -102,13 +124,12 @@ def test_scores_in_eight_bits_do_not_hang_on_the_batch(weights: Path) -> None:
     np.testing.assert_array_equal(fewer.feature, glanced.feature[:2])
 
 
-@needs_vnni
-def test_plain_pictures_are_what_a_border_of_the_mean_makes_them() -> None:
+def test_plain_pictures_are_what_a_border_of_the_mean_makes_them(whole: str) -> None:
     """Pixels go in as they are: zero in the normalised picture is the mean colour, not black."""
     model = network("resnet18")
     folded = fold_batch_norm(model.backbone)
     bright = torch.full((FRAMES, SIZE, SIZE, 3), 255, dtype=torch.uint8)
-    eight = Int8Backbone(folded, measured_ranges(folded, [normalised(bright)]), FRAMES, SIZE)
+    eight = Int8Backbone(folded, measured_ranges(folded, [normalised(bright)]), FRAMES, SIZE, HIGHEST[whole])
     with torch.no_grad():
         exact = folded(normalised(bright))
     got = eight(bright)
@@ -133,32 +154,66 @@ def test_ranges_hold_the_bulk_and_not_the_outlier() -> None:
     assert least_loss(np.full(1024, 1000.0), -2.0, 2.0) == pytest.approx((-2.0, 2.0), rel=0.02)
 
 
-def test_without_ranges_or_processor_it_goes_on_in_bfloat16(
+def test_the_quickest_numbers_of_a_processor(
     weights: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    model, _ = load_model(weights)
-    save_weights(tmp_path, model)
-    assert Ranker.load(tmp_path, "cpu").engine == "bfloat16"
-    assert engine_of(tmp_path) == "bfloat16"
-    bare = tmp_path / "cpuinfo"
-    bare.write_text("processor\t: 0\nflags\t\t: fpu sse2 avx2 avx512_vnni_not\n")
-    monkeypatch.setattr(engine, "_CPU", bare)
-    assert Ranker.load(weights, "cpu").engine == "bfloat16" == engine_of(weights)
-    bare.write_text("processor\t: 0\nflags\t\t: fpu avx2 avx512_vnni\n")
-    assert engine_of(weights) == "int8"
-    assert engine_of(weights, "cuda") == "bfloat16"
+    bare = tmp_path / "bare"
+    bare.mkdir()
+    for name in CPUINFO:
+        pretend(name, tmp_path, monkeypatch)
+        assert engine_of(weights) == ("int7" if name == "bfloat16" else name)
+        assert engine_of(bare) == {"int8": "bfloat16", "int7": "float32"}.get(name, name)
+        assert engine_of(weights, "cuda") == "bfloat16"
+        assert quick_bfloat16("cuda")
+        assert quick_bfloat16("cpu") == (name in ("int8", "bfloat16"))
     monkeypatch.setattr(engine, "_CPU", tmp_path / "missing")
-    assert engine_of(weights) == "bfloat16"
+    assert engine_of(weights) == "float32"
+    assert not quick_bfloat16("cpu")
 
 
-def test_a_torch_without_the_operators_goes_on_in_bfloat16(
-    weights: Path, monkeypatch: pytest.MonkeyPatch
+@pytest.mark.parametrize("name", ["bfloat16", "float32"])
+def test_without_whole_numbers_it_goes_on_in_fractions(
+    name: str, weights: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    model, _ = load_model(weights)
+    save_weights(tmp_path / "bare", model)
+    frames = clips(2, 4)
+    exact = Ranker.load(weights, "cpu").score(frames)
+    pretend(name, tmp_path, monkeypatch)
+    for folder in (weights, tmp_path / "bare")[name == "bfloat16" :]:
+        ranker = Ranker.load(folder, "cpu")
+        assert ranker.engine == name == engine_of(folder)
+        np.testing.assert_allclose(ranker.score(frames).margin, exact.margin, atol=0.3)
+
+
+@pytest.mark.parametrize(("whole_", "instead"), [("int8", "bfloat16"), ("int7", "float32")])
+def test_a_torch_without_the_operators_goes_on_in_fractions(
+    whole_: str, instead: str, weights: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def lacking(*given: object) -> None:
         raise AttributeError("'_OpNamespace' 'onednn' object has no attribute 'qconv_prepack'")
 
+    pretend(whole_, tmp_path, monkeypatch)
     monkeypatch.setattr("ranker.infer.Int8Backbone", lacking)
-    assert Ranker.load(weights, "cpu").engine == "bfloat16"
+    assert Ranker.load(weights, "cpu").engine == instead
+
+
+def test_sums_of_pairs_stay_within_sixteen_bits(whole: str) -> None:
+    """The whitest picture and the largest weights, next to each other: what would be cut off first."""
+    model = network("resnet18")
+    folded = fold_batch_norm(model.backbone)
+    with torch.no_grad():
+        for convolution in (folded.conv1, folded.layer1[0].conv1):
+            convolution.weight.copy_(
+                convolution.weight.sign() * convolution.weight.abs().amax((1, 2, 3), True)
+            )
+            convolution.weight.abs_()
+    bright = torch.full((FRAMES, SIZE, SIZE, 3), 255, dtype=torch.uint8)
+    ranges = measured_ranges(folded, [normalised(bright)])
+    with torch.no_grad():
+        exact = folded(normalised(bright))
+    got = Int8Backbone(folded, ranges, FRAMES, SIZE, HIGHEST[whole])(bright)
+    assert float((got - exact).norm()) < 0.1 * float(exact.norm())
 
 
 @pytest.mark.parametrize("how", ["no json", "a list", "schema", "other weights", "a layer less", "no number"])

@@ -13,7 +13,7 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
 import vdsl
-from ranker.engine import INT8, engine_of
+from ranker.engine import HIGHEST, INT8, engine_of
 from runtime.raster.types import LOOK_VERSION
 
 from .depends import digest
@@ -92,7 +92,9 @@ def judge_digest(options: Options) -> str:
     folder = options.weights or Path(vdsl.__file__).parents[1] / "ranker" / "weights"
     try:
         told = hashlib.sha256((folder / "config.json").read_bytes())  # it has the weights' digest
-        if engine_of(folder) == "int8":
+        engine = engine_of(folder)
+        told.update(engine.encode())
+        if engine in HIGHEST:
             told.update((folder / INT8).read_bytes())
         if options.taste is not None:
             told.update(options.taste.read_bytes())

@@ -63,14 +63,22 @@ class Ranker:
 
     ranges: of the network's outputs, which computing in whole numbers needs; engine: in which numbers its
         frame encoder computes, as :func:`ranker.engine.engine_for` names them
+    judges_guides: whether guides alone say enough to judge by, since it was taught by some without pictures
     """
 
-    def __init__(self, model: ShotRanker, device: str = "auto", ranges: Ranges | None = None) -> None:
+    def __init__(
+        self,
+        model: ShotRanker,
+        device: str = "auto",
+        ranges: Ranges | None = None,
+        judges_guides: bool = False,
+    ) -> None:
         self.config: ModelConfig = model.config
         self.device = _device(device)
         self._batch = CPU_BATCH if self.device.type == "cpu" else CUDA_BATCH
         if self.device.type == "cpu":
             torch.set_num_threads(CPU_THREADS)
+        self.judges_guides = judges_guides and self.config.guides > 0
         self._model = model.eval().requires_grad_(False).to(self.device)
         self._times = frame_times(self.config).to(self.device)
         folded = fold_batch_norm(self._model.backbone)
@@ -81,7 +89,9 @@ class Ranker:
     def load(cls, path: str | Path | None = None, device: str = "auto") -> Ranker:
         """The weights in the folder ``path``, or the shipped ones; raises :class:`RankerError`."""
         model, card = load_model(path)
-        return cls(model, device, load_ranges(path, model, card))
+        phases = card.training.get("phases") or ()
+        alone = any(dict(phase).get("size") == 0 for phase in phases)
+        return cls(model, device, load_ranges(path, model, card), alone)
 
     def fits(self, frames: int, size: int | None = None) -> None:
         """Raises :class:`RankerError` where shots of so many frames, of that size, are not what it judges."""
@@ -128,6 +138,21 @@ class Ranker:
         guides, times = self._used(guides, frames), self._times[at]
         guided = None if guides is None else Guided.of(guides, times)
         return self._scores(self._model.judge(features, times.expand(len(frames), -1), None, guided))
+
+    @torch.inference_mode()
+    def by_guides(self, guides: Guides) -> Scores:
+        """Judge shots nobody has drawn pictures of, by the guides of all their frames; features are zeros.
+
+        In the last bits scores depend on what is looked at together. Raises ValueError for weights that
+        need pictures (``judges_guides``).
+        """
+        if not self.judges_guides:
+            raise ValueError("these weights need pictures to judge by")
+        count, frames = len(guides), self.config.frames
+        guides.check(count, frames, frames)
+        nothing = self._times.new_zeros(count, frames, self._model.described)
+        times, guided = self._times.expand(count, -1), Guided.of(guides, self._times)
+        return self._scores(self._model.judge(nothing, times, None, guided, pictures=False))
 
     def _used(self, guides: Guides | None, frames: NDArray[np.uint8]) -> Guides | None:
         """The guides of shots, if these weights take any. Raises ValueError where they do not fit the

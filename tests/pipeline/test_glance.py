@@ -6,15 +6,20 @@ from pathlib import Path
 import numpy as np
 import pytest
 from numpy.typing import NDArray
+from proposed_shots import proposed
 
+from ranker.evaluate import spearman
+from ranker.taste import Taste, save_taste
+from ranker.weights import load_card
 from vdsl.pipeline import cache as cache_module
 from vdsl.pipeline import glance
 from vdsl.pipeline.compile import Result, Workshop, compile_file
-from vdsl.pipeline.filming import Seen
-from vdsl.pipeline.glance import GLANCED, Scored, second_looks
-from vdsl.pipeline.judging import GeometryJudge, Judge
+from vdsl.pipeline.filming import Camerawork, Seen
+from vdsl.pipeline.glance import Scored, Screening, second_looks
+from vdsl.pipeline.guides import about_of
+from vdsl.pipeline.judging import BY_GUIDES, BY_PICTURES, DiscriminatorJudge, GeometryJudge, Glance, Judge
 from vdsl.pipeline.options import Options
-from vdsl.pipeline.progress import StageClock
+from vdsl.pipeline.progress import Silence, StageClock
 from vdsl.propose.types import CameraProposal
 
 SCRIPT = """\
@@ -33,7 +38,8 @@ class Rough(GeometryJudge):
 
     name, looks = "ranker", True
 
-    def __init__(self) -> None:
+    def __init__(self, glances: Glance) -> None:
+        self.glances = glances
         self.seen: list[tuple[int, ...]] = []
 
     def scores(self, cameras: tuple[CameraProposal, ...], seen: Seen | None) -> NDArray[np.float64]:
@@ -43,20 +49,19 @@ class Rough(GeometryJudge):
         self.seen.append(seen.frames.shape[:2])
         return super().scores(cameras, None)
 
-    def glance(
-        self, cameras: tuple[CameraProposal, ...], seen: Seen, at: Sequence[int]
-    ) -> NDArray[np.float64]:
+    def glance(self, cameras: tuple[CameraProposal, ...], seen: Seen) -> NDArray[np.float64]:
         assert seen.guides is not None
-        assert seen.guides.maps.shape[:2] == (len(cameras), len(at))
+        assert seen.guides.maps.shape[:2] == (len(cameras), len(self.glances.frames))
+        assert (seen.frames.size > 0) == self.glances.pictures
         self.seen.append(seen.frames.shape[:2])
         off = np.sin(np.array([c.index for c in cameras]) * 7.0)
         return np.asarray(super().scores(cameras, None) + 0.01 * off)
 
 
 class RoughShop(Workshop):
-    def __init__(self) -> None:
+    def __init__(self, glances: Glance) -> None:
         super().__init__()
-        self.rough = Rough()
+        self.rough = Rough(glances)
 
     def judge(self, options: Options, clock: StageClock) -> Judge:
         return self.rough
@@ -78,15 +83,20 @@ def takes_of(result: Result) -> list[tuple[str, float]]:
     return [(t.key, t.score) for t in result.build.shots[0].takes]
 
 
-def test_takes_are_as_if_all_had_had_a_full_look(project: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    shop = RoughShop()
+@pytest.mark.parametrize("glances", [BY_PICTURES, BY_GUIDES])
+def test_takes_are_as_if_all_had_had_a_full_look(
+    project: Path, monkeypatch: pytest.MonkeyPatch, glances: Glance
+) -> None:
+    shop, each = RoughShop(glances), len(glances.frames)
     quick = compiled(project, shop)
     count = quick.build.shots[0].proposals
-    full = second_looks(count)
+    full = second_looks(count, glances)
     assert full < count
-    assert shop.rough.seen == [(count, len(GLANCED)), (full, 8)]
+    assert {frames for _, frames in shop.rough.seen[:-1]} == {each}
+    assert sum(n for n, _ in shop.rough.seen[:-1]) == count
+    assert shop.rough.seen[-1] == (full, 8)
     draw = next(s for s in quick.report.stages if s.name == "draw")
-    assert draw.count == len(GLANCED) * count + 8 * full
+    assert draw.count == each * count + 8 * full
 
     shop.rough.seen.clear()
     more = compiled(project, shop, takes=5)  # what was looked at before is known
@@ -94,14 +104,32 @@ def test_takes_are_as_if_all_had_had_a_full_look(project: Path, monkeypatch: pyt
     assert takes_of(more)[:1] == takes_of(quick)[:1]
     assert takes_of(compiled(project, shop, takes=5, cache=False)) == takes_of(more)
 
-    monkeypatch.setattr(glance, "second_looks", lambda count: count)
+    monkeypatch.setattr(glance, "second_looks", lambda count, glance: count)
     shop.rough.seen.clear()
     assert takes_of(compiled(project, shop, cache=False)) == takes_of(quick)
     assert {frames for _, frames in shop.rough.seen} == {8}
 
 
 def test_all_of_a_few_get_a_full_look_and_a_share_of_many() -> None:
-    assert [second_looks(n) for n in (0, 5, 16, 17, 64, 80, 200)] == [0, 5, 16, 16, 16, 20, 50]
+    some = (0, 5, 12, 16, 17, 64, 80, 200)
+    assert [second_looks(n, BY_PICTURES) for n in some] == [0, 5, 12, 16, 16, 16, 20, 50]
+    assert [second_looks(n, BY_GUIDES) for n in some] == [0, 5, 12, 12, 12, 12, 12, 30]
+
+
+def test_a_glance_by_guides_comes_near_a_full_look() -> None:
+    """Of a shot's proposals the best by a full look are among those that a glance lets through."""
+    act, grid = proposed('storyboard "t"\n' + SCRIPT.format(takes=3).replace("proposals 32", "proposals 60"))
+    shot, camerawork = act.line.shots[0], Camerawork("cpu")
+    about, judge = about_of(shot, grid, act.filming, act.staged), DiscriminatorJudge(None, "cpu")
+    screening = Screening(act.staged, "board", grid, about, camerawork, lambda: judge, StageClock(Silence()))
+    full, count = screening.scores(range(len(grid.cameras))), len(grid.cameras)
+    first = screening.scores(range(count), judge.glances)
+    assert first.shape == full.shape == (count,)
+    through = np.argsort(-first)[: second_looks(count, judge.glances)]
+    assert set(np.argsort(-full)[:3]) <= set(through.tolist())
+    order = spearman(full, first)
+    assert order is not None
+    assert order > 0.95
 
 
 def test_what_was_looked_at_goes_before_what_was_not() -> None:
@@ -112,7 +140,7 @@ def test_what_was_looked_at_goes_before_what_was_not() -> None:
         asked.append(list(which))
         return true[list(which)]
 
-    scored = Scored(lambda: true[::-1].copy(), look, {})  # the worst glance there can be
+    scored = Scored(lambda: true[::-1].copy(), look, {}, 16)  # the worst glance there can be
     scored.look_at_best()
     assert asked == [list(range(24, 40))]
     order = scored.order
@@ -123,3 +151,12 @@ def test_what_was_looked_at_goes_before_what_was_not() -> None:
     assert asked[1:] == [[3]]
     assert not scored.look((3, 30))
     assert scored.order.argmax() == 3
+
+
+def test_the_discriminator_glances_by_guides_and_with_a_taste_by_pictures(tmp_path: Path) -> None:
+    plain = DiscriminatorJudge(None, "cpu")
+    assert plain.glances == BY_GUIDES
+    taste = tmp_path / "taste.json"
+    nothing = np.zeros(2048, np.float32)
+    save_taste(taste, Taste(nothing, nothing, load_card().sha256, 1))
+    assert DiscriminatorJudge(None, "cpu", taste).glances == BY_PICTURES

@@ -20,6 +20,7 @@ from ranker.guides import CHANNELS, FLOW, MARKS, POINTS, SIDE, Guides, joined, p
 from ranker.infer import Ranker
 from ranker.model import ShotRanker, frame_times, normalised
 from ranker.train import train
+from ranker.weights import load_model
 
 
 def guides_of(rng: np.random.Generator, good: bool, movement: int) -> Guides:
@@ -195,6 +196,16 @@ def test_guides_are_learnt_from_and_a_shot_is_judged_by_its_own(tmp_path: Path) 
     some = guides.maps[:, list(at)], np.full_like(guides.flow, np.nan), guides.marks[:, list(at)]
     glanced = ranker.glance(frames[:, list(at)], at, Guides(*some))
     assert glanced.margin[::2].min() > glanced.margin[1::2].max()
+    assert ranker.judges_guides
+    alone = ranker.by_guides(guides)
+    assert alone.margin[::2].min() > alone.margin[1::2].max()
+    assert alone.feature.shape == scores.feature.shape
+    assert not alone.feature.any()
+    with pytest.raises(ValueError, match="guides: expected"):
+        ranker.by_guides(Guides(*some))
+    untaught = Ranker(load_model(tmp_path / "out" / "weights")[0], "cpu")
+    with pytest.raises(ValueError, match="need pictures"):
+        untaught.by_guides(guides)
     with pytest.raises(ValueError, match="guides: expected"):
         ranker.score(frames, guides[:5])
     assert ranker.score(frames[:0], guides[:0]).margin.shape == (0,)

@@ -19,13 +19,9 @@ from ..stage.assemble import StagedScene
 from .ahead import one_ahead
 from .filming import SEGMENTS, Camerawork, Seen
 from .guides import About
-from .judging import Judge
+from .judging import Glance, Judge
 from .progress import StageClock
 
-#: Of a shot's eight frames, those of a glance: the second and the seventh.
-GLANCED = (1, 6)
-#: The share of the proposals that get a full look, and how many do at least.
-_SHARE, _LEAST = 0.25, 16
 #: Frames drawn and judged at a time: bounds memory, and lets progress be seen.
 _DRAWN_AT_ONCE = 128
 
@@ -34,9 +30,9 @@ Scores = NDArray[np.float64]
 Look = Callable[[Sequence[int]], Scores]
 
 
-def second_looks(count: int) -> int:
+def second_looks(count: int, glance: Glance) -> int:
     """How many of so many proposals get a full look for certain; all of a few."""
-    return min(count, max(_LEAST, math.ceil(_SHARE * count)))
+    return min(count, max(glance.least, math.ceil(glance.share * count)))
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,9 +50,10 @@ class Screening:
     judge: Callable[[], Judge]
     clock: StageClock
 
-    def scores(self, which: Sequence[int], frames: Sequence[int] = range(SEGMENTS)) -> Scores:
-        """Scores [N] of proposals by their frames, all eight or some of them."""
+    def scores(self, which: Sequence[int], glance: Glance | None = None) -> Scores:
+        """Scores [N] of proposals by all eight frames, or by a glance."""
         clock, judge = self.clock, self.judge()
+        frames, pictures = (glance.frames, glance.pictures) if glance else (range(SEGMENTS), True)
         clock.begin("draw", len(frames) * len(which), "frames")
         clock.begin("rank", len(frames) * len(which), "frames")
         parts, at_once = [], _DRAWN_AT_ONCE // len(frames)
@@ -65,7 +62,10 @@ class Screening:
             with clock.spent("draw", len(frames) * len(cameras)):
                 about = [self.about] * len(cameras)
                 return self.camerawork.judge_frames(
-                    self.staged, self.style, self.grid.story, cameras, which=frames, about=about
+                    *(self.staged, self.style, self.grid.story, cameras),
+                    which=frames,
+                    about=about,
+                    pictures=pictures,
                 )
 
         batches = (
@@ -74,8 +74,7 @@ class Screening:
         )
         for cameras, seen in one_ahead(drawn, batches):
             with clock.spent("rank", len(frames) * len(cameras)):
-                whole = len(frames) == SEGMENTS
-                parts.append(judge.scores(cameras, seen) if whole else judge.glance(cameras, seen, frames))
+                parts.append(judge.glance(cameras, seen) if glance else judge.scores(cameras, seen))
         return np.concatenate(parts)
 
 
@@ -84,10 +83,13 @@ class Scored:
 
     glance: gives the scores [P] of all of them by a glance, between 0 and 1; asked once
     look: gives those of a full look; known: such scores from before, by index
+    best: how many that a glance puts first get a full look
     """
 
-    def __init__(self, glance: Callable[[], Scores], look: Look, known: Mapping[int, float]) -> None:
-        self._glance, self._look = glance, look
+    def __init__(
+        self, glance: Callable[[], Scores], look: Look, known: Mapping[int, float], best: int = 0
+    ) -> None:
+        self._glance, self._look, self._best = glance, look, best
         self.known = dict(known)
 
     @classmethod
@@ -98,10 +100,11 @@ class Scored:
     @classmethod
     def of(cls, screening: Screening) -> Scored:
         """Of proposals nobody has looked at."""
-        count = len(screening.grid.cameras)
-        if second_looks(count) == count:
-            return cls(lambda: np.zeros(count), screening.scores, {})
-        return cls(lambda: screening.scores(range(count), GLANCED), screening.scores, {})
+        count, glance = len(screening.grid.cameras), screening.judge().glances
+        best = second_looks(count, glance)
+        if best == count:
+            return cls(lambda: np.zeros(count), screening.scores, {}, best)
+        return cls(lambda: screening.scores(range(count), glance), screening.scores, {}, best)
 
     @cached_property
     def first(self) -> Scores:
@@ -117,7 +120,7 @@ class Scored:
 
     def look_at_best(self) -> None:
         """Look in full at those that a glance puts first."""
-        self.look(np.argsort(-self.first, kind="stable")[: second_looks(len(self.first))].tolist())
+        self.look(np.argsort(-self.first, kind="stable")[: self._best].tolist())
 
     @property
     def order(self) -> Scores:

@@ -37,7 +37,9 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--story", type=Path, default=DEMO)
     parser.add_argument("--old", default="lens 50mm", help="words of one line of the story")
-    parser.add_argument("--new", default="lens 46mm", help="what they become")
+    parser.add_argument(
+        "--new", default=fresh_lens(), help="what they become; never seen before, unless said"
+    )
     parser.add_argument("--rank", default="discriminator")
     options = parser.parse_args()
     text = options.story.read_text("utf-8")
@@ -45,6 +47,11 @@ def main() -> None:
         parser.error(f"`{options.old}` has to be in the story once")
     with tempfile.TemporaryDirectory() as folder:
         measure(Path(folder), text, text.replace(options.old, options.new), options.rank)
+
+
+def fresh_lens() -> str:
+    """A lens no results are kept of."""
+    return f"lens {40 + time.time() % 1e4 / 1e3:.4f}mm"
 
 
 def measure(folder: Path, before: str, after: str, rank: str) -> None:

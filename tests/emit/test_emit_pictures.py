@@ -11,6 +11,7 @@ import pytest
 from PIL import Image
 
 from runtime.video import VideoError, read_video
+from runtime.worker import Worker
 from vdsl.emit import sheet
 from vdsl.emit.burnin import BurnIn, burn, strip_height
 from vdsl.emit.lettering import clean, shortened, width, wrapped
@@ -18,8 +19,15 @@ from vdsl.emit.page import page_html
 from vdsl.emit.plan_ground import Ground
 from vdsl.emit.stills import read_keys, write_keys
 from vdsl.emit.storyboard_json import storyboard_document
+from vdsl.emit.types import Build
 from vdsl.emit.video import write_take
 from vdsl.emit.words import timecode
+
+
+def written(folder: Path, build: Build) -> list[Path]:
+    """Sheets that are there."""
+    with Worker(2) as worker:
+        return sheet.write_sheets(folder, build, worker)
 
 
 def test_sheet_shows_the_keyframes(tmp_path: Path) -> None:
@@ -30,7 +38,7 @@ def test_sheet_shows_the_keyframes(tmp_path: Path) -> None:
             f.built(tmp_path, "s3", takes=0),
         ]
     )
-    (path,) = sheet.write_sheets(tmp_path, build)
+    (path,) = written(tmp_path, build)
     picture = np.asarray(Image.open(path).convert("RGB")).astype(int)
     assert picture.shape[1] == sheet.WIDTH
     x = sheet.MARGIN + sheet.TEXT + 40
@@ -89,7 +97,7 @@ def test_sheet_says_what_a_cut_breaks_below_the_pictures(tmp_path: Path) -> None
 def test_a_long_film_goes_on_over_sheets(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(sheet, "SHOTS_PER_SHEET", 2)
     shot = f.built(tmp_path, "s1", takes=1)
-    paths = sheet.write_sheets(tmp_path, f.film([shot] * 5))
+    paths = written(tmp_path, f.film([shot] * 5))
     assert [p.name for p in paths] == ["sheet.png", "sheet-2.png", "sheet-3.png"]
 
 
@@ -98,7 +106,7 @@ def test_a_long_film_goes_on_over_sheets(tmp_path: Path, monkeypatch: pytest.Mon
 )
 def test_any_text_can_be_drawn(tmp_path: Path, text: str) -> None:
     build = f.film([f.built(tmp_path, "s1", say=text, note=text, takes=1)], title=text)
-    assert sheet.write_sheets(tmp_path, build)[0].exists()
+    assert written(tmp_path, build)[0].exists()
     assert "s1" in page_html(storyboard_document(build))
     assert width(shortened(text, 20, 200), 20) <= 200 + width("…", 20)
     assert len(wrapped(text, 20, 200, 2)) <= 2

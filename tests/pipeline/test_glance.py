@@ -110,6 +110,18 @@ def test_takes_are_as_if_all_had_had_a_full_look(
     assert {frames for _, frames in shop.rough.seen} == {8}
 
 
+def test_a_draft_is_one_until_the_judge_that_is_wanted_has_chosen(project: Path) -> None:
+    """Also where another judge's choice is filmed already."""
+    story, shop = project / "story.vds", RoughShop(BY_GUIDES)
+    story.write_text(SCRIPT.format(takes=1), "utf-8")
+    compile_file(story, project / "build", Options(rank="geometry"))
+    draft = compile_file(story, project / "build", Options(draft=True), workshop=shop)
+    assert draft.build.draft
+    assert not shop.rough.seen
+    assert not compile_file(story, project / "build", Options(), workshop=shop).build.draft
+    assert not compile_file(story, project / "build", Options(draft=True), workshop=shop).build.draft
+
+
 def test_all_of_a_few_get_a_full_look_and_a_share_of_many() -> None:
     some = (0, 5, 12, 16, 17, 64, 80, 200)
     assert [second_looks(n, BY_PICTURES) for n in some] == [0, 5, 12, 16, 16, 16, 20, 50]

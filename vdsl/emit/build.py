@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from pathlib import Path
 
+from runtime.worker import Worker
+
 from .page import write_page
 from .plan import write_plans
 from .sheet import write_sheets
@@ -12,6 +14,9 @@ from .storyboard_json import write_storyboard
 from .track_json import write_tracks
 from .types import Build
 from .video import WritePart, write_animatic, write_part
+
+#: Sheets that may wait to be written.
+_PAGES_WAITING = 2
 
 
 def write_build(
@@ -26,10 +31,12 @@ def write_build(
     films: waits until the takes' films are there, which are needed only at the end
     ``report.json`` is written last by whoever measured the run (:mod:`vdsl.emit.report_json`).
     """
-    write_tracks(folder, build)
-    write_sheets(folder, build)
-    write_plans(folder, build)
-    write_page(folder / "index.html", build)
-    write_storyboard(folder / "storyboard.json", build)
+    with Worker(_PAGES_WAITING) as worker:  # sheets are large, and are pressed meanwhile
+        write_sheets(folder, build, worker)
+        write_tracks(folder, build)
+        write_plans(folder, build)
+        write_page(folder / "index.html", build)
+        write_storyboard(folder / "storyboard.json", build)
+        worker.wait()
     films()
     write_animatic(folder / "animatic.mp4", build, part_to)

@@ -39,12 +39,16 @@ def numbers(values: Mapping[str, float | str], decimals: int = MEASURE_DECIMALS)
 
 def dump(document: Mapping[str, Any]) -> str:
     """The document as indented text that ends in a line end."""
-    return _lines(document, 0) + "\n"
+    # Lone surrogates cannot be written as UTF-8: replaced here as everywhere else.
+    return (_lines(document, 0) + "\n").encode("utf-8", "replace").decode("utf-8")
 
 
 def write_document(path: Path, document: Mapping[str, Any]) -> None:
     """Write the document to a file."""
     write_text(path, dump(document))
+
+
+_flat = json.JSONEncoder(ensure_ascii=False, allow_nan=False).encode
 
 
 def _lines(value: Any, depth: int) -> str:
@@ -53,11 +57,21 @@ def _lines(value: Any, depth: int) -> str:
         items = [f"{pad}{_flat(str(k))}: {_lines(v, depth + 1)}" for k, v in value.items()]
         return "{\n" + ",\n".join(items) + "\n" + " " * depth + "}"
     if isinstance(value, list | tuple) and any(isinstance(v, list | tuple | Mapping) for v in value):
-        return "[\n" + ",\n".join(pad + _lines(v, depth + 1) for v in value) + "\n" + " " * depth + "]"
+        inner = (
+            _rows(value, pad) if _tabular(value) else ",\n".join(pad + _lines(v, depth + 1) for v in value)
+        )
+        return "[\n" + inner + "\n" + " " * depth + "]"
     return _flat(value)
 
 
-def _flat(value: Any) -> str:
-    # Lone surrogates cannot be written as UTF-8: replaced here as everywhere else.
-    text = json.dumps(value, ensure_ascii=False, allow_nan=False)
-    return text.encode("utf-8", "replace").decode("utf-8")
+def _tabular(value: list[Any] | tuple[Any, ...]) -> bool:
+    """Whether these are rows of numbers, and of nothing in which a bracket could stand."""
+    return all(isinstance(row, list) and row and all(type(v) in _NUMBERS for v in row) for row in value)
+
+
+def _rows(value: list[Any] | tuple[Any, ...], pad: str) -> str:
+    """All rows at once, which is many times as fast as one by one."""
+    return pad + _flat(value)[1:-1].replace("], [", "],\n" + pad + "[")
+
+
+_NUMBERS = (float, int, type(None))

@@ -7,12 +7,15 @@ A long film goes on over ``sheet-2.png`` and so on, so that no picture gets too 
 
 from __future__ import annotations
 
-import io
+from functools import partial
 from pathlib import Path
 
 import cv2
 import numpy as np
+from numpy.typing import NDArray
 from PIL import Image, ImageDraw
+
+from runtime.worker import Worker
 
 from . import lettering
 from .folder import write_bytes
@@ -28,27 +31,31 @@ SHOTS_PER_SHEET = 30
 WIDTH, MARGIN, TEXT, GAP = 2000, 48, 372, 10
 PAPER, INK, QUIET, RULE, ACCENT = "#f6f3ec", "#1b1c1f", "#6f6a61", "#d9d3c6", "#b3392b"
 HEAD = 150
-_PRESSED = 3  # half the time of PIL's 6, for files an eighth larger
 _NOTE = 24  # height of a line on what a cut breaks
 _LEAST_ROW = 226
 _AROUND = 92  # of a row's height, what is not for words on what happens
 _PLAN_SHAPE, _LEAST_PLAN = 4 / 3, 200
 
 
-def write_sheets(folder: Path, build: Build) -> list[Path]:
-    """Write the sheet, or sheets, into the folder; returns their paths."""
+def write_sheets(folder: Path, build: Build, worker: Worker) -> list[Path]:
+    """Draw the sheet, or sheets; returns their paths in the folder, where the worker writes them."""
     shots = build.shots
     pages = [shots[i : i + SHOTS_PER_SHEET] for i in range(0, len(shots), SHOTS_PER_SHEET)] or [()]
     paths = []
     for number, page in enumerate(pages):
         path = folder / ("sheet.png" if number == 0 else f"sheet-{number + 1}.png")
-        buffer = io.BytesIO()
-        draw_sheet(build, page, number * SHOTS_PER_SHEET, (number + 1, len(pages))).save(
-            buffer, "PNG", compress_level=_PRESSED
-        )
-        write_bytes(path, buffer.getvalue())
+        sheet = draw_sheet(build, page, number * SHOTS_PER_SHEET, (number + 1, len(pages)))
+        worker.do(partial(_write_png, path, np.asarray(sheet)))
         paths.append(path)
     return paths
+
+
+def _write_png(path: Path, picture: NDArray[np.uint8]) -> None:
+    """Write a picture uint8 [H, W, 3], letting other threads run, as PIL does not."""
+    done, content = cv2.imencode(".png", cv2.cvtColor(picture, cv2.COLOR_RGB2BGR))
+    if not done:
+        raise OSError(f"cannot write {path}: the picture cannot be encoded")
+    write_bytes(path, content.tobytes())
 
 
 def draw_sheet(build: Build, shots: tuple[BuiltShot, ...], first: int, page: tuple[int, int]) -> Image.Image:

@@ -197,7 +197,22 @@ class Catalog:
         if found is None:
             return None
         source, start, end = found
-        return parse_definition(source, kind, name, self.report, start, end)
+        key = (source, start, end, kind, name)
+        if key not in _parsed:
+            found_wrong = Report()
+            definition = parse_definition(source, kind, name, found_wrong, start, end)
+            if definition is None or found_wrong.diagnostics:  # to be reported every time
+                return parse_definition(source, kind, name, self.report, start, end)
+            if len(_parsed) >= _PARSED:
+                _parsed.clear()
+            _parsed[key] = definition
+        return _parsed[key]
+
+
+#: Definitions of library files by what they were read from: source, offsets, kind and name. Who watches a
+#: script compiles it again and again, and they seldom change.
+_parsed: dict[tuple[Source, int, int, str, str], ast.Definition] = {}
+_PARSED = 1024
 
 
 def _file_digest(path: Path) -> str:

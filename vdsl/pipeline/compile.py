@@ -328,12 +328,15 @@ class _Filming:
         picked: bool,
         start: Callable[[int], int],
     ) -> tuple[BuiltTake, ...]:
-        """The takes of a shot, best first; in a draft a still of the best one, if any has no film yet.
+        """The takes of a shot, best first; in a draft a still of the best one, if any has no film yet, or
+        its judge has not chosen.
 
         Where first takes are wanted, of a shot with films still to be made the first one alone.
         """
         quick = self._quick is not None or self.run.options.firsts
-        if quick and not all(crew.film_is_kept(line, shot, kept) for crew, kept in shown):
+        if quick and not all(
+            crew is not self._quick and crew.film_is_kept(line, shot, kept) for crew, kept in shown
+        ):
             if self._quick is not None:
                 crew, kept = shown[0]
                 return (crew.sketch(line, shot, kept, picked),)

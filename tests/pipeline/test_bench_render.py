@@ -126,3 +126,14 @@ def test_both_are_measured_where_there_is_opengl() -> None:
 
 def test_a_first_picture_is_drawn() -> None:
     first_picture("cpu")
+
+
+def test_a_camera_that_is_held_stands_still_while_people_move() -> None:
+    act, story, moving, _ = filmable(DEMO)
+    given = case_of(act, story, moving).only(6)
+    camera, held = given.views.camera, given.held().views
+    assert np.ptp(camera.position, axis=0).max() > 0
+    for name in ("position", "axes", "focal"):
+        kept, first = getattr(held.camera, name), getattr(camera, name)[0]
+        np.testing.assert_array_equal(kept, np.broadcast_to(first, kept.shape))
+    np.testing.assert_array_equal(held.moment, given.views.moment)

@@ -20,11 +20,13 @@ from ..propose.types import CameraProposal, ProposalGrid
 from .captions import grid
 from .casting import TEST_EVERY, Scene, Troupe
 from .filming import Camerawork
+from .glance import Scored, Screening
 from .guides import about_of
 from .judging import DiscriminatorJudge
+from .progress import Silence, StageClock
 
 _SEED = 2_000_003  # added to the seed: other stories than of training sets and hidden picks
-_PROPOSALS, _AT_ONCE = 60, 16
+_PROPOSALS = 60
 _LEAST = 8  # proposals that there have to be to choose from
 _CELL = (256, 144)  # pixels of a frame
 _AT = (0.1, 0.5, 0.9)  # of a take's length
@@ -38,16 +40,17 @@ def blind(out: Path, lines: int, weights: Path | None = None, seed: int = 0, dev
     judge, camerawork = DiscriminatorJudge(weights, device), Camerawork(device)
     rng, cells, key = np.random.default_rng(seed), [], []
     for number, (scene, shown) in enumerate(_lines(seed, lines), 1):
-        scores = _scores(judge, camerawork, scene, shown)
-        chosen = int(scores.argmax())
-        other = int(rng.choice([i for i in range(len(scores)) if i != chosen]))
+        scored = _scored(judge, camerawork, scene, shown)
+        chosen = int(scored.order.argmax())
+        other = int(rng.choice([i for i in range(len(shown.cameras)) if i != chosen]))
+        scored.look([other])
         sides = [chosen, other] if rng.random() < 0.5 else [other, chosen]
         for letter, i in zip("AB", sides, strict=True):
             cells.append(
                 (f"{number} {letter}", shown.shot, _strip(camerawork, scene, shown, shown.cameras[i]))
             )
         said = {"line": number, "shot": shown.shot, "place": scene.place, "chosen": "AB"[sides.index(chosen)]}
-        key.append(said | {"scores": [round(float(scores[i]), 4) for i in sides]})
+        key.append(said | {"scores": [round(scored.known[i], 4) for i in sides]})
         print(number, shown.shot, flush=True)
     for begin in range(0, len(cells), 2 * _ROWS):
         path = out / f"sheet-{begin // (2 * _ROWS) + 1}.png"
@@ -68,17 +71,14 @@ def _lines(seed: int, lines: int) -> Iterator[tuple[Scene, ProposalGrid]]:
         number += TEST_EVERY
 
 
-def _scores(
-    judge: DiscriminatorJudge, camerawork: Camerawork, scene: Scene, shown: ProposalGrid
-) -> np.ndarray:
-    shot, parts = scene.shots[0], []
-    subject = about_of(shot, shown, scene.filming, scene.staged)
-    for begin in range(0, len(shown.cameras), _AT_ONCE):
-        cameras = shown.cameras[begin : begin + _AT_ONCE]
-        about = [subject] * len(cameras)
-        seen = camerawork.judge_frames(scene.staged, shot.style, shown.story, cameras, about=about)
-        parts.append(judge.scores(cameras, seen))
-    return np.concatenate(parts)
+def _scored(judge: DiscriminatorJudge, camerawork: Camerawork, scene: Scene, shown: ProposalGrid) -> Scored:
+    """The scores of a line's proposals, as ``compile`` comes by them."""
+    shot = scene.shots[0]
+    about = about_of(shot, shown, scene.filming, scene.staged)
+    clock = StageClock(Silence())
+    scored = Scored.of(Screening(scene.staged, shot.style, shown, about, camerawork, lambda: judge, clock))
+    scored.look_at_best()
+    return scored
 
 
 def _strip(camerawork: Camerawork, scene: Scene, shown: ProposalGrid, camera: CameraProposal) -> Image.Image:

@@ -172,3 +172,14 @@ def test_the_discriminator_glances_by_guides_and_with_a_taste_by_pictures(tmp_pa
     nothing = np.zeros(2048, np.float32)
     save_taste(taste, Taste(nothing, nothing, load_card().sha256, 1))
     assert DiscriminatorJudge(None, "cpu", taste).glances == BY_PICTURES
+
+
+def test_a_draft_proposes_for_the_takes_that_follow(project: Path) -> None:
+    story, shop = project / "story.vds", RoughShop(BY_GUIDES)
+    story.write_text(SCRIPT.format(takes=2), "utf-8")
+    draft = compile_file(story, project / "build", Options(draft=True), workshop=shop)
+    assert "propose" in {stage.name for stage in draft.report.stages}
+    full = compile_file(story, project / "build", Options(), workshop=shop)
+    assert "propose" not in {stage.name for stage in full.report.stages}
+    alone = compile_file(story, project / "other", Options(cache=False), workshop=RoughShop(BY_GUIDES))
+    assert takes_of(alone) == takes_of(full)

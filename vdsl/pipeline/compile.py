@@ -32,6 +32,7 @@ from ..lang.ir import Shot, StoryLine, Transition
 from ..propose.cameras import subject_of
 from ..propose.promise import achieved
 from ..propose.story import propose
+from ..propose.types import ProposalGrid
 from .acts import Act, Acts, Warm, stage_acts
 from .cache import Cache
 from .chosen import Choices, find_again, made_with
@@ -73,9 +74,11 @@ class Result:
 
 @dataclass(eq=False)
 class Workshop:
-    """What a process keeps ready from one compilation to the next: renderers, the judge, staged scenes."""
+    """What a process keeps ready from one compilation to the next: renderers, the judge, staged scenes, and
+    the proposals made last."""
 
     warm: Warm = field(default_factory=Warm)
+    grids: dict[str, ProposalGrid] = field(default_factory=dict)
     _cameras: dict[str, Camerawork] = field(default_factory=dict)
     _judges: dict[tuple[str, str], Judge] = field(default_factory=dict)
 
@@ -133,6 +136,7 @@ def compile_file(
             clock,
             worker,
             {shot: wish.takes for shot, wish in wanted.items()},
+            workshop.grids,
         )
         build = _Filming(run, choices).build()
         _warn_of_poor_shots(build.shots, checked.report)

@@ -72,6 +72,10 @@ class Kept:
     drawn: str
 
 
+#: Shots whose proposals are kept ready at a time.
+_GRIDS = 2
+
+
 @dataclass(frozen=True, eq=False)
 class Judged:
     """A shot proposed, judged and looked at.
@@ -103,6 +107,7 @@ class Run:
 
     worker: encodes films beside all else; a film is in the folder once its work is done
     further: how many takes are wanted in all of shots of which there are to be more, by their ids
+    grids: proposals made last, by their keys; they may go from one run to the next
     """
 
     storyboard: Storyboard
@@ -115,6 +120,7 @@ class Run:
     clock: StageClock
     worker: Worker
     further: Mapping[str, int] = field(default_factory=dict)
+    grids: dict[str, ProposalGrid] = field(default_factory=dict)
 
 
 class Shooting:
@@ -125,7 +131,6 @@ class Shooting:
         self.seed = run.storyboard.seed if seed is None else seed
         self._options = options_digest(run.options)
         self._judge = judge_digest(run.options)
-        self._grid: tuple[str, ProposalGrid] | None = None
 
     # -- judging -------------------------------------------------------------------------------
 
@@ -229,13 +234,16 @@ class Shooting:
         )
 
     def _proposed(self, line: StoryLine, shot: Shot) -> ProposalGrid:
-        key = digest(self._base(line, shot), shot.proposals)
-        if self._grid is None or self._grid[0] != key:
+        key, grids = digest(self._base(line, shot), shot.proposals), self.run.grids
+        if key not in grids:
             self.run.clock.begin("propose", shot.proposals, UNITS["propose"])
             act = self._act(line)
             with self.run.clock.spent("propose", shot.proposals):
-                self._grid = (key, propose(line, shot, act.state, act.filming, advised=True))
-        return self._grid[1]
+                made = propose(line, shot, act.state, act.filming, advised=True)
+            if len(grids) >= _GRIDS:  # those of one shot are asked for several times, one after the other
+                grids.clear()
+            grids[key] = made
+        return grids[key]
 
     def _scores(self, grid: ProposalGrid, act: Act, line: StoryLine, shot: Shot) -> Scored:
         """The judge's scores of the proposals of a shot; of those not looked at before by a glance."""

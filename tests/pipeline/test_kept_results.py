@@ -234,8 +234,8 @@ def test_first_takes_are_filmed_alone_and_kept_for_the_whole(project: Path) -> N
     assert [len(s.takes) for s in firsts.build.shots] == [2, 1, 2]
     assert (project / "build" / "animatic.mp4").exists()
     film = (project / "build" / "shots" / "room-anna-nod" / "take-1.mp4").stat().st_mtime_ns
-    whole, worked = made(project, text)
-    assert (whole.build.waiting, "propose" in worked, "film" in worked) == (0, True, True)
+    whole, worked = made(project, text)  # from the proposals of the build before, which the workshop keeps
+    assert (whole.build.waiting, worked) == (0, ["film"])
     assert [len(s.takes) for s in whole.build.shots] == [2, 2, 2]
     assert whole.build.shots[1].takes[0].key == firsts.build.shots[1].takes[0].key
     assert (project / "build" / "shots" / "room-anna-nod" / "take-1.mp4").stat().st_mtime_ns == film

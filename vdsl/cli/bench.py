@@ -20,6 +20,7 @@ _ROWS = (
     ("render_720p_per_s", "final frames, 1280 x 720", "frames/s"),
     ("render_encode_720p_per_s", "final frames with encoding", "frames/s"),
     ("ranked_shots_per_s", "ranked shots", "shots/s"),
+    ("chosen_from_per_s", "proposals drawn and chosen from", "proposals/s"),
     ("check_seconds", "vdsc check", "s"),
     ("demo_seconds", "vdsc compile", "s"),
     ("demo_peak_mib", "vdsc compile, peak memory", "MiB"),

@@ -26,8 +26,10 @@ from ..propose.story import propose
 from ..propose.types import CameraProposal, ProposalGrid
 from .compile import Act, stage_acts
 from .filming import SEGMENTS, Camerawork, Seen
+from .glance import Scored, Screening
 from .guides import about_of
 from .judging import DiscriminatorJudge
+from .progress import Silence, StageClock
 from .script import load_storyboard
 
 SCHEMA = "vds.bench/1"
@@ -46,6 +48,7 @@ class Figures:
     render_720p_per_s: float
     render_encode_720p_per_s: float
     ranked_shots_per_s: float | None
+    chosen_from_per_s: float | None
     check_seconds: float
     demo_seconds: float | None
     demo_peak_mib: float | None
@@ -70,12 +73,14 @@ def measure(
     said("frames at 720p")
     render, encoded = _takes(acts, grids, camerawork)
     said("the discriminator")
-    shots = _ranked(tuple(c for g in grids for c in g.cameras[:_JUDGED]), seen, device)
+    judge = _judge(device)
+    shots = _ranked(judge, tuple(c for g in grids for c in g.cameras[:_JUDGED]), seen) if judge else None
+    chosen = _chosen(judge, acts, grids, camerawork) if judge else None
     seconds, peak = None, None
     if whole:
         said("a whole compilation")
         seconds, peak = _whole(script, device)
-    return Figures(proposals, rank_frames, render, encoded, shots, check_seconds, seconds, peak)
+    return Figures(proposals, rank_frames, render, encoded, shots, chosen, check_seconds, seconds, peak)
 
 
 def _rate(work: Callable[[], int]) -> float:
@@ -135,19 +140,39 @@ def _takes(acts: list[Act], grids: list[ProposalGrid], camerawork: Camerawork) -
     return _rate(render), _rate(encode)
 
 
-def _ranked(cameras: tuple[CameraProposal, ...], seen: Seen, device: str) -> float | None:
+def _judge(device: str) -> DiscriminatorJudge | None:
     from ranker import RankerError
 
     try:
-        judge = DiscriminatorJudge(None, device)
+        return DiscriminatorJudge(None, device)
     except RankerError:
         return None
 
+
+def _ranked(judge: DiscriminatorJudge, cameras: tuple[CameraProposal, ...], seen: Seen) -> float:
+    """Full looks alone, at frames drawn before."""
     some = Seen(seen.frames[:32], None if seen.guides is None else seen.guides[:32])
 
     def work() -> int:
         judge.scores(cameras[:32], some)
         return len(some.frames)
+
+    return _rate(work)
+
+
+def _chosen(
+    judge: DiscriminatorJudge, acts: list[Act], grids: list[ProposalGrid], camerawork: Camerawork
+) -> float:
+    """All it takes to find the best proposals of a line: drawing, a glance at all, full looks at some."""
+
+    def work() -> int:
+        for act, grid in zip(acts, grids, strict=True):
+            shot, clock = act.line.shots[0], StageClock(Silence())
+            about = about_of(shot, grid, act.filming, act.staged)
+            Scored.of(
+                Screening(act.staged, "board", grid, about, camerawork, lambda: judge, clock)
+            ).look_at_best()
+        return sum(len(grid.cameras) for grid in grids)
 
     return _rate(work)
 

@@ -86,6 +86,7 @@ def test_one_set_shows_its_tree_with_spots() -> None:
     assert re.search(r"^kitchen \(room\): middle$", text, re.MULTILINE)
     assert re.search(r"^  table: .*top", text, re.MULTILINE)
     assert "morning light" in text  # what the comment above the definition says
+    assert vdsc("assets", "sets", "apartment.kitchen").stdout == text  # as scenes are written
 
 
 def test_names_are_forgiven_and_suggested() -> None:

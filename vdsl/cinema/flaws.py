@@ -26,6 +26,7 @@ LEAST = (
 MOST = (
     ("visibility", "foreground", 0.05),
     ("visibility", "backdrop_gap", 0.03),
+    ("visibility", "walk_missed", 0.5),
     ("framing", "head_cut", 0.03),
     ("framing", "feet_cut", 0.03),
     ("framing", "size_error", 0.1),

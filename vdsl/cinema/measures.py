@@ -43,6 +43,7 @@ MEASURES = (
     "thirds_error",  # distance of the eyes from the upper third, share of the frame's height
     "interest",  # share of the other points that matter (thing in hand, partner) in the frame and not hidden
     "empty",  # share of the time in which neither the subject's head nor any of those points is in the frame
+    "walk_missed",  # share of the way the subject goes on which nothing of it is seen; 0 for a step or two
     "foreground",  # share of the picture covered by something much nearer than the subject
     "face",  # cosine between face and direction to the camera: 1 frontal, 0 profile, −1 from behind
     "clearance",  # metres from the camera to the nearest solid or person, at most 1
@@ -50,10 +51,12 @@ MEASURES = (
     "angular_speed",  # degrees a second, the greatest
     "jerk",  # metres a second cubed, root mean square
     "horizon",  # degrees off the asked roll, the greatest
-    "backdrop_gap",  # share of the picture's width where a wall taken away is missing behind the subject
+    "backdrop_gap",  # share of the picture's width where the set is missing behind the subject
     "elevation",  # degrees the camera looks down (positive) at its aim, at the key frame
     "height",  # metres of the camera over the subject's floor, at the key frame
 )
+
+_A_WALK = 1.0  # metres that count as going somewhere
 
 
 @dataclass(frozen=True, eq=False)
@@ -91,6 +94,7 @@ def measure(takes: Takes, subject: Subject, world: World, fps: float) -> Measure
     seen = seen_from(sight)
     values["view"] = everybody_seen(takes, subject, at, camera, axes, seen_from)
     values |= _visibility(takes, inside[:, :, sight_index], seen)
+    values["walk_missed"] = _missed(points[:, names.index("waist")], inside[:, :, sight_index] & seen)
     shown = _shown(takes, world, at, camera, axes, hidden, others)
     values["interest"] = _interest(takes, shown)
     somebody = inside[:, :, names.index("eyes")] | shown.any(axis=-1)
@@ -127,6 +131,15 @@ def _visibility(takes: Takes, inside: Bools, seen: Bools) -> dict[str, Array]:
         "head_visible": head,
         "ends_visible": np.minimum(some[rows, first], some[rows, last]),
     }
+
+
+def _missed(waist: Array, seen: Bools) -> Array:
+    """Share [P] of a way [F, 3] on which none of the points [P, F, K] that are to be seen is."""
+    steps = length(np.diff(waist[:, :2], axis=0))
+    if steps.sum() < _A_WALK:
+        return np.zeros(len(seen))
+    way = np.append(steps, 0.0) + np.append(0.0, steps)  # at every frame, there and back: twice
+    return np.asarray((~seen.any(axis=2) * way).sum(axis=1) / way.sum())
 
 
 def _shown(

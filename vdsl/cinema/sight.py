@@ -51,23 +51,42 @@ def hidden_walls(world: World, camera: Array, subject: Array, corners: Array) ->
 
 
 def backdrop_gaps(world: World, hidden: Bools, camera: Array, subject: Array, rays: Array) -> Array:
-    """Share [P] of looks across the frame that would meet a hidden wall behind the subject.
+    """Share [P] of looks across the frame in which the set is missing behind the subject.
 
     rays: [P, F, C, 2] unit floor-plan directions
+    A look meets a hidden wall behind the subject; or, of a take for which walls are hidden, no wall that is
+    shown, though the subject would meet one in that direction: the look goes past the room. Walls lower or
+    higher than the subject make no room.
     """
+    gaps = np.zeros(len(camera))
     if not world.walls or not hidden.any():
-        return np.zeros(len(camera))
+        return gaps
+    some = hidden.any(axis=1)
+    hidden, camera, rays = hidden[some, None, None, :], camera[some, :, None, :2], rays[some]
+    heart = subject[None, :, None, :2]
     low = np.array([w.low for w in world.walls])
-    along = np.array([w.high for w in world.walls]) - low
-    x, y = low[:, 0] - camera[:, :, None, None, 0], low[:, 1] - camera[:, :, None, None, 1]
+    high = np.array([w.high for w in world.walls])
+    met = _meetings(low, high, camera, rays)
+    behind = (met > length(camera - heart)[..., None]) & hidden
+    base, tall = np.array([w.base for w in world.walls]), np.array([w.height for w in world.walls])
+    height = subject[:, 2].mean()
+    around = (base < height) & (base + tall > height)
+    past = ~((met > 0.0) & ~hidden & around).any(axis=-1)
+    enclosed = ((_meetings(low, high, heart, rays) > 0.0) & around).any(axis=-1)
+    gaps[some] = (behind.any(axis=-1) | (past & enclosed)).mean(axis=(1, 2))
+    return gaps
+
+
+def _meetings(low: Array, high: Array, origin: Array, rays: Array) -> Array:
+    """How far along rays [..., 2] from origins [..., 2] walls are met, metres: [..., W]; -inf for never."""
+    along = high - low
+    x, y = low[:, 0] - origin[..., 0, None], low[:, 1] - origin[..., 1, None]
     dx, dy = rays[..., 0, None], rays[..., 1, None]
     denominator = dx * along[:, 1] - dy * along[:, 0]
     safe = np.where(np.abs(denominator) < 1e-9, 1e-9, denominator)
     t = (x * along[:, 1] - y * along[:, 0]) / safe
     s = (x * dy - y * dx) / safe
-    reach = length(camera[..., :2] - subject[None, :, :2])[:, :, None, None]
-    behind = (t > reach) & (s >= 0) & (s <= 1) & hidden[:, None, None, :]
-    return np.asarray(behind.any(axis=3).mean(axis=(1, 2)))
+    return np.asarray(np.where((s >= 0) & (s <= 1), t, -np.inf))
 
 
 def distances(solids: Solids, points: Array) -> Array:

@@ -45,6 +45,7 @@ NOTES = {
     "thirds_error": Note("frame height", "the eyes are on the upper third", 0.0, 0.12),
     "interest": Note("share", "what is acted on, or with whom, is seen too", 0.6, 1.0),
     "empty": Note("share", "there is always something to see", 0.0, 0.05),
+    "walk_missed": Note("share", "the walk is seen", 0.0, 0.3),
     "foreground": Note("share", "nothing near is in the way", 0.0, 0.1),
     "face": Note("cosine", "the face is turned to the camera", 0.0, 1.0),
     "clearance": Note("m", "the camera has room around it", 0.5, _ANY),
@@ -72,6 +73,7 @@ _COMPARED = {
     "backdrop_gap": ("less wall missing behind", "more wall missing behind", "backdrop_gap"),
     "foreground": ("less in the way", "more in the way", "foreground"),
     "empty": ("less empty", "emptier", "empty"),
+    "walk_missed": ("more of the walk", "less of the walk", "walk_missed"),
     "head_cropped": (
         "head and body less cut at the ends",
         "head or body cut more at the start or the end",
@@ -169,6 +171,7 @@ def faults(measures: Measures, movement: str) -> tuple[str, ...]:
         (m["feet_cut"] > 0.02 and not near, "cuts the feet"),
         (m["head_cut"] > 0.02 and not near, "cuts the head"),
         (m["face"] < -0.4, "sees the back of the head"),
+        (m["walk_missed"] > 0.5, f"misses {number('walk_missed', m['walk_missed'])} of the walk"),
         (m["foreground"] > 0.2, f"has something near over {covered} of the picture"),
         (m["backdrop_gap"] > 0.05, "misses a wall behind the subject"),
         (m["interest"] < 0.5, "does not show all the line is about"),

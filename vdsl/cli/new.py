@@ -31,16 +31,16 @@ character jonas = man(build slim, top navy)
 # --- Late in the evening -----------------------------------------------------------
 
 scene home = apartment.kitchen at night
-mara at table facing window
+mara at chair_2 sitting
 jonas at door
 
 / (push wide eye-level) 3s                              # the place, before anything happens
 
-(jonas walk mara)          / (follow full eye-level)
+(jonas walk table)         / (follow medium-long eye-level)
 (jonas talk mara)          / (static medium eye-level)  say "You are still awake."
-(mara greet jonas)         / (* close-up *)             say "I was waiting for the rain."
-(mara walk window)         / (pan medium eye-level)
-(mara point window)        / (arc full low-angle)       say "There. Do you hear it?"
+(mara talk jonas)          / (* close-up *)             say "I was waiting for the rain."
+(jonas walk window)        / (pan medium eye-level)
+(jonas point window)       / (arc medium low-angle)     say "There. Do you hear it?"
 fade-out 1s
 """
 

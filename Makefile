@@ -10,7 +10,7 @@ demo: $(STAMP)
 	$(BIN)/vdsc compile examples/coffee.vds
 
 test: $(STAMP)
-	$(BIN)/pytest -n 2 --dist loadfile --no-loadscope-reorder  # in the order of tests/conftest.py
+	$(BIN)/pytest -n 2 --dist loadfile --no-loadscope-reorder --durations 25  # in the order of tests/conftest.py
 
 lint: $(STAMP)
 	$(BIN)/ruff check .

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from PIL import Image, ImageDraw
 
 from ..cinema.track import CameraTrack, camera_axes, project
+from .remember import remembering
 from .types import BuiltTake, Walk
 
 Array = NDArray[np.float64]
@@ -35,17 +36,24 @@ _AHEAD = 0.4  # metres in front of where somebody stands, so that the arrow is n
 
 def arrowed(image: Image.Image, take: BuiltTake, frame: int) -> Image.Image:
     """A copy of a still of a take with arrows for what moves after it; frame: which one it is."""
-    width, height = image.size
-    large = Image.new("RGBA", (width * _FINE, height * _FINE), (0, 0, 0, 0))
-    draw = ImageDraw.Draw(large)
-    for walk in take.people:
-        for polygon in _way(walk, take.camera.track, frame):
-            _fill(draw, polygon, large.size, PERSON, RIM)
-    for polygon in camera_arrows(take.camera.movement, take.camera.track, frame):
-        _fill(draw, polygon, large.size, CAMERA, (255, 253, 247, 255))
     out = image.convert("RGBA")
-    out.alpha_composite(large.resize(image.size, Image.Resampling.BOX))
+    out.alpha_composite(_arrows(take.people, take.camera.movement, take.camera.track, frame, image.size))
     return out.convert("RGB")
+
+
+@remembering(100)
+def _arrows(
+    people: Sequence[Walk], movement: str, track: CameraTrack, frame: int, size: tuple[int, int]
+) -> Image.Image:
+    """The arrows alone, RGBA."""
+    large = Image.new("RGBA", (size[0] * _FINE, size[1] * _FINE), (0, 0, 0, 0))
+    draw = ImageDraw.Draw(large)
+    for walk in people:
+        for polygon in _way(walk, track, frame):
+            _fill(draw, polygon, large.size, PERSON, RIM)
+    for polygon in camera_arrows(movement, track, frame):
+        _fill(draw, polygon, large.size, CAMERA, (255, 253, 247, 255))
+    return large.resize(size, Image.Resampling.BOX)
 
 
 def _fill(

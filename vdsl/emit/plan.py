@@ -21,6 +21,7 @@ from . import lettering
 from .folder import write_bytes, write_text
 from .plan_ground import Plan, Point, lens_words, scene_plan, shot_plan
 from .plan_marks import HEIGHT, WIDTH, Mark, marks_of
+from .remember import remembering
 from .types import Build
 from .words import line_words
 
@@ -38,6 +39,10 @@ COLOURS = {
     "person-2": ("#7a3f8f", "#cf9be3"),
     "person-3": ("#8a5a10", "#e3b565"),
 }
+
+
+#: Plans that a process remembers, and pictures of such.
+KEPT, PAINTED = 500, 60
 
 
 class Look(NamedTuple):
@@ -126,6 +131,7 @@ def plan_of(build: Build, index: int, rank: int = 1) -> Plan:
 # --- SVG --------------------------------------------------------------------------------------
 
 
+@remembering(KEPT)
 def plan_svg(plan: Plan) -> str:
     """The plan as an SVG document of 400 by 300 units; it may stand in a page as it is."""
     styled = ((_style_of(mark), _svg(mark)) for mark in marks_of(plan) if _on_sheet(mark))
@@ -216,8 +222,9 @@ def _haloed(mark: Mark) -> bool:
 # --- paint ------------------------------------------------------------------------------------
 
 
+@remembering(PAINTED)
 def plan_picture(plan: Plan, width: int = 1200) -> Image.Image:
-    """The plan painted in its light colours, RGB."""
+    """The plan painted in its light colours, RGB. For looking at, not to paint on."""
     fine = 2 * width / WIDTH  # drawn at twice the size, then reduced, so that edges are smooth
     image = Image.new("RGB", (2 * width, 2 * round(width * HEIGHT / WIDTH)), COLOURS["paper"][0])
     for mark in marks_of(plan):

@@ -299,9 +299,9 @@ def _filmed(track: CameraTrack, label: str) -> Filmed:
 
 def _way(points: NDArray[np.float64], nearer: float = 0.03) -> tuple[Point, ...]:
     """A path without the points that make no difference on a plan; its ends always."""
-    kept = [0]
-    for i in range(1, len(points)):
-        if float(np.hypot(*(points[i] - points[kept[-1]]))) >= nearer * 3:
+    kept, at = [0], points.tolist()
+    for i in range(1, len(at)):
+        if math.dist(at[i], at[kept[-1]]) >= nearer * 3:
             kept.append(i)
     if kept[-1] != len(points) - 1:
         kept.append(len(points) - 1)

@@ -14,6 +14,7 @@ from runtime.video import VideoError
 from .folder import write_bytes
 from .guides import NO_GUIDES, Guides
 from .overlay import guided
+from .remember import remembering
 from .types import TakeMedia
 from .video import key_frames, reduced, take_paths, write_poster
 
@@ -30,12 +31,22 @@ def write_keys(path: Path, keys: Sequence[Pictures]) -> None:
 
 
 def read_keys(path: Path, count: int = 3) -> tuple[Pictures, ...]:
-    """What :func:`write_keys` wrote."""
-    data = np.frombuffer(path.read_bytes(), np.uint8)
-    stack = cv2.imdecode(data, cv2.IMREAD_COLOR)
-    if stack is None or len(stack) % count:
+    """What :func:`write_keys` wrote; not to be painted on."""
+    keys = _keys_in(path.read_bytes(), count)
+    if not keys:
         raise VideoError(f"cannot read {path}: it holds no keyframes")
-    return tuple(np.split(np.asarray(cv2.cvtColor(stack, cv2.COLOR_BGR2RGB), np.uint8), count))
+    return keys
+
+
+@remembering(40)
+def _keys_in(data: bytes, count: int) -> tuple[Pictures, ...]:
+    """The pictures in a file's contents; none if it is damaged."""
+    stack = cv2.imdecode(np.frombuffer(data, np.uint8), cv2.IMREAD_COLOR) if data else None
+    if stack is None or len(stack) % count:
+        return ()
+    pictures = np.asarray(cv2.cvtColor(stack, cv2.COLOR_BGR2RGB), np.uint8)
+    pictures.flags.writeable = False
+    return tuple(np.split(pictures, count))
 
 
 def write_stills(

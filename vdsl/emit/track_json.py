@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from .documents import TRACK_DECIMALS, numbers, rounded, rows, write_document
-from .types import Build, BuiltTake
+from .documents import TRACK_DECIMALS, dump, numbers, rounded, rows
+from .folder import write_text
+from .remember import remembering
+from .types import Build, BuiltTake, TakeMedia
 from .video import take_paths
 
 SCHEMA = "vds.track/1"
+#: In place of a take's pictures, which change from build to build, and make no difference here.
+_UNSAID = TakeMedia(Path(), Path(), 0, ())
 
 
 def write_tracks(folder: Path, build: Build) -> None:
@@ -21,9 +25,14 @@ def write_tracks(folder: Path, build: Build) -> None:
         for take in built.takes:
             _, _, path = take_paths(folder, built.shot.id, take.rank)
             path.parent.mkdir(parents=True, exist_ok=True)
-            write_document(
-                path, track_document(take, built.shot.id, build.storyboard.fps, build.storyboard.rig)
-            )
+            plain = replace(take, media=_UNSAID)
+            write_text(path, _text(plain, built.shot.id, build.storyboard.fps, build.storyboard.rig))
+
+
+@remembering(500)
+def _text(take: BuiltTake, shot: str, fps: tuple[int, int], rig: str) -> str:
+    """The document as it is written."""
+    return dump(track_document(take, shot, fps, rig))
 
 
 def track_document(take: BuiltTake, shot: str, fps: tuple[int, int], rig: str) -> dict[str, Any]:

@@ -12,10 +12,9 @@ import sys
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from functools import partial
+from itertools import islice
 from pathlib import Path
 from time import perf_counter
-
-import numpy as np
 
 from runtime.video import FRAMES_WAITING
 from runtime.worker import Worker
@@ -40,6 +39,8 @@ from .depends import digest, shot_digests
 from .edit import Edited, Reel, cut_findings, edited
 from .filming import Camerawork
 from .further import wishes, with_further, write_wishes
+from .glance import Screening
+from .guides import about_of
 from .judging import DiscriminatorJudge, GeometryJudge, Judge
 from .keys import code_digest, judge_digest
 from .letters import warn_of_letters
@@ -54,6 +55,9 @@ from .script import Checked, ScriptError, load_storyboard
 from .shooting import UNITS, Judged, Kept, Run, Shooting
 from .tasting import taste_of
 from .turns import one_at_a_time
+
+#: Proposals looked at to get ready.
+_TRIED = 16
 
 __all__ = ["Act", "Result", "Workshop", "compile_file", "peak_mib", "stage_acts"]
 
@@ -164,13 +168,19 @@ def prepare(path: Path, options: Options, workshop: Workshop) -> None:
     for line in checked.storyboard.lines:
         act = acts.act(line)
         for shot in line.shots[:1]:
-            grid = propose(line, replace(shot, proposals=1), act.state, act.filming)
+            grid = propose(line, replace(shot, proposals=_TRIED), act.state, act.filming)
             for camera in grid.cameras[:1]:
                 story = next(s for s in grid.story if s.index == camera.story)
-                at = np.zeros(1, np.int64)
-                camerawork.frames_at(act.staged, shot.style, story, camera, checked.storyboard.size, at)
-                camerawork.judge_ids(act.staged, shot.style, grid.story, (camera,), (96, 54))
+                size = checked.storyboard.size
+                for _ in islice(camerawork.take_frames(act.staged, shot.style, story, camera, size), 1):
+                    camerawork.judge_ids(act.staged, shot.style, grid.story, (camera,), (96, 54))
                 achieved(camera, subject_of(shot, story, act.filming), act.filming.rig)
+            if grid.cameras and options.rank != "geometry":
+                about = about_of(shot, grid, act.filming, act.staged)
+                judge = partial(workshop.judge, options, clock)
+                looks = Screening(act.staged, shot.style, grid, about, camerawork, judge, clock)
+                for glance in (looks.judge().glances, None):
+                    looks.scores(range(len(grid.cameras)), glance)
         break
     workshop.judge(options, clock)
 

@@ -16,7 +16,7 @@ from .adjacency import beside
 from .bake import light_basis, occlusion_volume
 from .device import Backend
 from .lamps import lamp_volume
-from .looks import glass_colors, packed_light, paper_level, paper_tones
+from .looks import glass_colors, gloom, packed_light, paper_level, paper_tones
 from .panes import Glass, divided
 from .prepare import Prepared, check, prepare
 from .sunlight import Sunlight, find_sunlight
@@ -72,7 +72,7 @@ class Loaded:
     without; shadow: the set's map; sheet, chart: what shading needs of each triangle of the set; lamps:
     light of its lamps (``lamps.py``); sunlight: what falls through windows; cells: shape of the occlusion
     volume; columns, rows: of the floor's cells; walls, people: how many can be left out; palette: matrices
-    that a moment needs; paper: brightness of the paper for hatching
+    that a moment needs; paper: for hatching, the luma that stays white, and how gloomy it is
     """
 
     scene: Prepared
@@ -89,7 +89,7 @@ class Loaded:
     walls: int
     people: int
     palette: int
-    paper: float
+    paper: tuple[float, float]
 
     @property
     def static_vertices(self) -> int:
@@ -125,7 +125,7 @@ def loaded(scene: RenderScene, style: Style, backend: Backend, shading: Any) -> 
     cast = partial(_set_shadow, prepared, arrays, style, backend)
     sunlight = find_sunlight(prepared, arrays, opaque.light, style, backend, cast, chart)
     palette = int(opaque.joints.max()) + 1 if len(opaque.joints) else 0
-    paper = paper_level(opaque.light)
+    paper = paper_level(opaque.light), gloom(opaque.light)
     surfaces, extent = (shadow, sheet, chart, lamps, sunlight, prepared.density.values.shape), (columns, rows)
     return Loaded(prepared, arrays, glass, *surfaces, *extent, opaque.wall_count, people, palette, paper)
 
@@ -165,7 +165,9 @@ def _uploaded(prepared: Prepared, scene: RenderScene, style: Style, backend: Bac
     arrays["weights"] = up(prepared.detail.scene.weights.astype(np.float32))
     arrays["light"] = up(packed_light(scene.light, style))
     if style.hatch:
-        arrays["tone"] = up(paper_tones(prepared.color, prepared.info[:, 1] & 0xFF, scene.light))
+        tones = paper_tones(prepared.color, prepared.info[:, 1] & 0xFF, scene.light)
+        tones[prepared.info[:, 0] < prepared.moving_surface, 1] = -1.0  # doors and sashes with the set
+        arrays["tone"] = up(tones)
     arrays["basis"] = up(light_basis(np.array(scene.light.sun)).astype(np.float32).reshape(-1))
     arrays["values"] = up(volume.values.reshape(-1))
     arrays["volume_low"] = up(np.array([*volume.low, 1.0 / volume.cell], np.float32))

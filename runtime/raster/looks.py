@@ -19,6 +19,7 @@ CLAY_BACKDROP = ((0.93, 0.93, 0.92), (0.80, 0.83, 0.86))  # sRGB
 LUMA = np.array([0.2126, 0.7152, 0.0722])
 CLOTH_INK, SKIN_INK = (0.40, 0.84), (0.50, 0.90)  # darkness from which it takes ink, and at which it is black
 PAPER_SHARE = 0.66  # what a thing must throw back of the light to stay white on paper
+GLOOM = (200.0, 145.0)  # paper levels at which it begins to be, and is as gloomy as can be
 
 
 def surface_colors(
@@ -53,6 +54,11 @@ def packed_light(light: Light, style: Style) -> NDArray[np.float32]:
 def paper_level(light: Light) -> float:
     """Luma 0..255 of what stays white on paper: a pale thing in all of the light."""
     return float(_most(np.full((1, 3), PAPER_SHARE), light)[0])
+
+
+def gloom(light: Light) -> float:
+    """How far from the light of day a set is, 0..1: what its lamps do not reach is hatched the more."""
+    return float(np.clip((GLOOM[0] - paper_level(light)) / (GLOOM[0] - GLOOM[1]), 0.0, 1.0))
 
 
 def paper_tones(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import lru_cache
 
 import numpy as np
@@ -10,7 +11,7 @@ from numpy.typing import NDArray
 from raster_scenes import box, looking, room, scene, sphere, still
 
 from runtime.materials import MATERIALS
-from runtime.raster.looks import glass_colors, packed_light, paper_tones
+from runtime.raster.looks import glass_colors, gloom, packed_light, paper_tones
 from runtime.raster.renderer import Renderer
 from runtime.raster.types import STYLES, RenderScene, Views
 from runtime.world import Light
@@ -63,7 +64,54 @@ def test_ink_is_black_and_white() -> None:
     assert np.ptp(picture, axis=-1).max() < 14, "no colour"
     luma = picture.mean(axis=-1)
     assert (luma > 235).mean() > 0.35, "paper"
-    assert (luma < 120).mean() > 0.02, "ink"
+    assert (luma < 120).mean() > 0.015, "ink"
+
+
+DAY = Light(
+    (0.3, 0.2, 0.9), (0.70, 0.66, 0.56), (1.12, 1.11, 1.10), (1.04, 1.0, 0.94), ((0.93,) * 3, (0.8,) * 3)
+)
+NIGHT = Light(
+    (0.3, 0.2, 0.9), (0.33, 0.34, 0.41), (0.30, 0.34, 0.44), (0.2, 0.2, 0.3), ((0.46,) * 3, (0.23,) * 3)
+)
+
+
+def test_a_night_is_hatched_and_a_day_is_not() -> None:
+    assert gloom(DAY) == 0.0
+    assert gloom(NIGHT) == 1.0
+    pale = box((-40, -40, -0.1), (40, 40, 0), color=(0.9, 0.9, 0.9))
+    views = looking([(0.0, -3.0, 1.6)], [(0.0, 3.0, 1.6)])
+    inked = {}
+    for name, light in (("day", DAY), ("night", NIGHT)):
+        picture = drawn("ink", scene([pale], [], light=light), views, (320, 180))[0].astype(float)
+        inked[name] = [float((rows < 200).mean()) for rows in (picture[:70], picture[140:])]
+    assert max(inked["day"]) == 0.0, "sky and floor stay white"
+    assert min(inked["night"]) > 0.05, "both have strokes"
+    assert max(inked["night"]) < 0.6, "and are not black"
+
+
+def test_strokes_of_the_sky_stay_where_they_are() -> None:
+    """A step to any side moves nothing in the sky, and a turn moves it as a whole."""
+    content = scene([box((-4, 40, -0.1), (4, 41, 0))], [], light=NIGHT)
+    eyes = [(0.0, 0.0, 1.5), (3.0, 1.0, 2.5)]
+    views = looking(eyes, [(x, y + 100.0, z + 30.0) for x, y, z in eyes])
+    first, second = drawn("ink", content, views, (320, 180))
+    assert (first[:90] < 200).mean() > 0.05
+    assert np.abs(first[:90].astype(int) - second[:90]).mean() < 0.5
+
+
+def test_a_door_is_hatched_like_the_wall_it_is_in() -> None:
+    leaf = box((-1, 2, 0), (1, 2.1, 2), color=(0.05, 0.06, 0.1))
+    views = looking([(0.0, -1.0, 1.0)], [(0.0, 2.0, 1.0)])
+
+    def ink(content: RenderScene) -> float:
+        renderer("ink").load(content)
+        palettes = still(1 + int(content.joints.max(initial=0)))
+        picture = renderer("ink").render(palettes, views, (160, 90)).color
+        return float((picture[0, 30:60, 60:100] < 128).mean())
+
+    hung = replace(scene([], [leaf]), fitting=np.full(len(leaf.faces), -1, np.int32))
+    assert ink(hung) > 0.05
+    assert ink(hung) == pytest.approx(ink(scene([leaf], [])), abs=0.02)
 
 
 def test_strokes_stay_on_what_they_are_drawn_on() -> None:

@@ -17,7 +17,9 @@ from .pattern import value_noise
 
 SPACING = 0.0085  # of the picture's height
 FIRST, SECOND = (0.61, 0.45, 0.65), (-0.52, 0.66, 0.55)  # across the strokes of the two layers
-PAPER = 0xFAF7F9FA  # luma, blue, green, red
+DEEPER = 0.4  # how much lighter a set has to be to stay white where it is as gloomy as can be
+OPENER = 0.4  # and how much of their ink people lose there, so that they stand out
+SKY, BRIGHT = 0.9, 165.0  # how dark strokes make a sky, and the luma from which on it stays white
 
 
 @ti.func
@@ -52,6 +54,16 @@ def strokes(place, along, grow, spacing, half, lattice: ti.template()):
     return bounded(ti.max(width, 0.5) - away + 0.5, 0.0, 1.0) * thin * eased(press, 0.10, 0.2)
 
 
+@ti.func
+def inked(ink):
+    """The colour of paper under so much ink, 0..1: luma, blue, green, red."""
+    shade = 1.0 - 0.93 * ink
+    r8 = ti.cast(250.0 * shade + 0.5, ti.u32)
+    g8 = ti.cast(249.0 * shade + 0.5, ti.u32)
+    b8 = ti.cast(247.0 * shade + 0.5, ti.u32)
+    return r8 | (g8 << 8) | (b8 << 16) | (((r8 * 5 + g8 * 9 + b8 * 2) >> 4) << 24)
+
+
 @ti.kernel
 def hatch_rows(
     view: f2,
@@ -64,6 +76,7 @@ def hatch_rows(
     static_vertices: ti.i32,
     own: f2,
     level: ti.f32,
+    gloom: ti.f32,
     lattice: f1,
     vis: u64s,
     todo: i1,
@@ -77,8 +90,9 @@ def hatch_rows(
 ):
     """Turn a shaded picture into strokes, in place.
 
-    own [F, 2]: how light each triangle is in all of the light, 1 for white, and the ink of its colour;
-    level: luma that stays white; todo: levels of runs
+    own [F, 2]: how light each triangle is in all of the light, 1 for white, and the ink of its colour, less
+        than 0 of what belongs to the set;
+    level: luma that stays white; gloom: how far from the light of day the set is, 0..1; todo: levels of runs
     """
     for slot in range(slots):
         line = crew.task(slot, views * height, queue, host)
@@ -100,16 +114,31 @@ def hatch_rows(
                 t = triangle(vis, i)
                 if todo[line * ((width + RUN - 1) // RUN) + x // RUN] < SHADE:
                     continue
+                tone = ti.cast(picture[i] >> 24, ti.f32)
+                ray = first + step * ti.cast(x, ti.f32)
                 if t < 0:
-                    picture[i] = ti.u32(PAPER)
+                    # the sky at night: strokes on a sphere that is the same from everywhere
+                    dark = SKY * (BRIGHT - tone) / 255.0
+                    ink = 0.0
+                    if dark > 0.1:
+                        far = 1.0 / ray.norm()
+                        wa, wb = vec3(FIRST), vec3(SECOND)
+                        ra, rb = wa.dot(ray), wb.dot(ray)
+                        turn, drop = ray.dot(step) * far * far, ray.dot(down) * far * far
+                        across = ti.Vector([wa.dot(step) - ra * turn, wa.dot(down) - ra * drop]).norm() * far
+                        half = spacing * (0.07 + 0.12 * bounded(dark, 0.0, 1.0))
+                        ink = strokes(ra * far, rb * far, across, spacing, half, lattice)
+                        ink *= eased(dark, 0.1, 0.26)
+                    picture[i] = inked(ink)
                 else:
-                    tone = ti.cast(picture[i] >> 24, ti.f32) / level
+                    tone /= level
                     dark = 1.0 - tone
-                    if t < static_faces:
-                        dark = 0.85 * dark - 0.05  # sets are quiet
+                    if own[t, 1] < 0:
+                        # sets are quiet
+                        dark = 0.85 * (1.0 - tone / (1.0 + DEEPER * gloom)) - 0.05
                     else:
                         # people: shadows whatever the colour, and what is dark itself
-                        dark = 0.62 * (1.0 - tone / own[t, 0]) + own[t, 1]
+                        dark = (0.62 * (1.0 - tone / own[t, 0]) + own[t, 1]) * (1.0 - OPENER * gloom)
                     ink = 0.0
                     if dark > 0.1:
                         if t != last:
@@ -136,7 +165,6 @@ def hatch_rows(
                             wa, wb = vec3(FIRST), vec3(SECOND)
                             ga, gb = g1 * wa.dot(e1) + g2 * wa.dot(e2), g1 * wb.dot(e1) + g2 * wb.dot(e2)
                             xa, xb = wa.dot(r) + ga.dot(eye - p), wb.dot(r) + gb.dot(eye - p)
-                        ray = first + step * ti.cast(x, ti.f32)
                         facing = plane.dot(ray)
                         z = offset / facing
                         ra, rb = ga.dot(ray), gb.dot(ray)
@@ -153,8 +181,4 @@ def hatch_rows(
                             other = strokes(place_b, place_a, across_b, spacing, half, lattice)
                             ink = ti.max(ink, other * eased(dark, 0.46, 0.58))
                             ink = ti.max(ink, eased(dark, 0.6, 0.76))
-                    shade = 1.0 - 0.93 * ink
-                    r8 = ti.cast(250.0 * shade + 0.5, ti.u32)
-                    g8 = ti.cast(249.0 * shade + 0.5, ti.u32)
-                    b8 = ti.cast(247.0 * shade + 0.5, ti.u32)
-                    picture[i] = r8 | (g8 << 8) | (b8 << 16) | (((r8 * 5 + g8 * 9 + b8 * 2) >> 4) << 24)
+                    picture[i] = inked(ink)

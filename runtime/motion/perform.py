@@ -13,7 +13,7 @@ from runtime.body.skeleton import JOINT
 
 from .acting import Performer
 from .plan import Plan, begin, keep
-from .planning import add_partner, plan_task
+from .planning import add_partner, listen, plan_task
 from .scene import Scene, seeded
 from .types import (
     Actor,
@@ -81,8 +81,11 @@ def _plan(
         window = giver.windows[-1] if giver.windows else None
         if window is None or window.partner is None or window.partner not in plans or window.partner == name:
             continue
+        other = plans[window.partner]
         if any((partner.tracks, partner.reaches, partner.gazes, partner.beats, partner.talks)):
-            add_partner(plans[window.partner], partner, window, giver, task.clip.apart > 0)
+            add_partner(other, partner, window, giver, task.clip.apart > 0)
+        elif window.timeline.talks and not other.acts and other.kept is None:
+            listen(other, giver, window)
     return plans
 
 

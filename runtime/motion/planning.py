@@ -8,6 +8,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from runtime.body.skeleton import JOINT
 
@@ -24,6 +25,8 @@ from .timeline import FootMove, Gaze, Grasp, Jump, Reach, Timeline
 from .trail import RATE
 from .types import Capture, GaitStyle, PropState, TargetPoint, Task
 
+Array = NDArray[np.float64]
+
 #: Taking hold of a thing that an action needs and that is not in a hand yet.
 PICK = Timeline(
     reaches=(Reach("near", "target", 0.12, 0.55, 0.68, 1.0),),
@@ -31,6 +34,8 @@ PICK = Timeline(
     gazes=(Gaze("target", 0.0, 0.75),),
 )
 PICK_TIME = 1.25
+#: Seconds until one turns to who speaks, and how far aside they have to be for that, radians.
+_HEARD, _ASIDE = 0.25, 1.1
 #: Two people who stood closer than this for an action step apart again, metres.
 _ROOM = 0.62
 
@@ -196,6 +201,24 @@ def _turn_to_reach(plan: Plan, timeline: Timeline, task: Task) -> float:
     return route.now - began
 
 
+def listen(plan: Plan, speaker: Plan, window: Window) -> None:
+    """Who is spoken to in a window, and has nothing to do, turns to a speaker they could not well look at."""
+    xy, _, _ = speaker.route.root(np.array([window.at(0.5)]))
+    _turn_to(plan, xy[0], window.at(min(t.start for t in window.timeline.talks)) + _HEARD, _ASIDE)
+    plan.end = max(plan.end, plan.route.now)
+
+
+def _turn_to(plan: Plan, place: Array, time: float, beyond: float) -> None:
+    """On their feet, turns to a place from ``time`` on, if that is more than ``beyond`` radians aside."""
+    route = plan.route
+    if route.seat is not None or route.low:
+        return
+    to = float(np.arctan2(*(place - route.at[:2])[::-1]))
+    if abs(wrap(to - route.heading)) > beyond:
+        route.now = max(0.0, time)
+        route.travel(None, to)
+
+
 def add_partner(plan: Plan, timeline: Timeline, window: Window, giver: Plan, close: bool) -> None:
     """The other person's part of an action, in step with ``window`` of the one who acts; close: nearer than
     for talking, so that they have to face each other."""
@@ -204,11 +227,7 @@ def add_partner(plan: Plan, timeline: Timeline, window: Window, giver: Plan, clo
     x, y = float(xy[0, 0]), float(xy[0, 1])
     point = TargetPoint((x, y, 0.8 * head), (x, y, head), character=giver.name)
     route = plan.route
-    if route.seat is None and not route.low:
-        to = float(np.arctan2(*(xy[0] - route.at[:2])[::-1]))
-        if abs(wrap(to - route.heading)) > (0.3 if close else 0.9):
-            route.now = max(0.0, window.start - 0.6)
-            route.travel(None, to)
+    _turn_to(plan, xy[0], window.start - 0.6, 0.3 if close else 0.9)
     hands = choose_hands(plan, point, window.start)
     if not plan.held:
         hands.update(near="r", free="r", holding="r", other="l")

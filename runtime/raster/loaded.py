@@ -41,6 +41,7 @@ UPLOADED = (
     "head",
     "casters",
     "area",
+    "solid",
 )
 
 
@@ -106,6 +107,7 @@ def loaded(scene: RenderScene, style: Style, backend: Backend, shading: Any) -> 
     prepared = prepare(opaque, style)
     arrays = _uploaded(prepared, opaque, style, backend)
     arrays["floor"], columns, rows = _floor(prepared, backend)
+    arrays["tops"] = _tops(prepared, arrays, (columns, rows), style, backend)
     shadow = _set_shadow(prepared, arrays, style, backend, prepared.set_casters)
     count = prepared.static_faces
     sheet = backend.buffer((2 * max(count, 1) * shading.SHEET,), np.float32)
@@ -182,6 +184,19 @@ def _floor(prepared: Prepared, backend: Backend) -> tuple[Any, int, int]:
     columns, rows = (int(n) for n in np.ceil((high - low) / cell) + 2)
     floor = np.array([*(low - cell), 1.0 / cell, *prepared.levels], np.float32)
     return backend.upload(floor), columns, rows
+
+
+def _tops(
+    prepared: Prepared, arrays: dict[str, Any], cells: tuple[int, int], style: Style, backend: Backend
+) -> Any:
+    """How high the furniture is over each of these cells."""
+    from .kernels import light  # only now: it imports taichi
+
+    tops = backend.upload(np.full(cells[0] * cells[1], light.NOWHERE, np.float32))
+    if style.occlusion:
+        faces = (arrays["vertices"], arrays["faces"], prepared.static_faces)
+        light.find_tops(*faces, arrays["floor"], *cells, tops)
+    return tops
 
 
 def _set_shadow(

@@ -27,8 +27,8 @@ class Moments:
     """The moments that are drawn at a time, M of them, and one more in which nobody is there.
 
     position, normal: float32 [M, V, 3] of skinned vertices; ball: float32 [M, C, 4] bounds of moving
-    clusters; frame [M + 1, 3], size, depth, coarse: their shadow maps; ground: [M + 1, rows, columns] how
-    closely things stand over the floor
+    clusters; frame [M + 1, 3], size, depth, coarse: their shadow maps; ground: [M + 1, 2, rows, columns]
+    how closely things stand over the floor, and over furniture
     """
 
     def __init__(self, backend: Backend, buffer: Buffers, style: Style) -> None:
@@ -64,8 +64,9 @@ class Moments:
             self._cast(loaded, moments, skinned)
         if self._style.occlusion:
             spare = self._buffer("spare", (moments * loaded.rows * loaded.columns,), np.float32)
-            floor = (a["floor"], loaded.columns, loaded.rows, spare, self.ground)
-            self._light.touch(self.position, a["area"], moments, *floor, *self._backend.crew(moments))
+            floor = (a["floor"], a["tops"], loaded.columns, loaded.rows, spare, self.ground)
+            crew = self._backend.crew(moments)
+            self._light.touch(self.position, a["area"], a["solid"], moments, *floor, *crew)
 
     def _reserve(self, loaded: Loaded, palettes: int, height: int, skinned: int) -> None:
         """Buffers, and the moment in which nobody is there."""
@@ -83,10 +84,10 @@ class Moments:
         summary = max(1, self._light.summary_size(self.size))
         self.coarse = self._buffer("coarse", (moments * summary,), np.float32)
         cells = loaded.rows * loaded.columns
-        self.ground = self._buffer("ground", ((moments + 1) * cells,), np.float32)
+        self.ground = self._buffer("ground", ((moments + 1) * 2 * cells,), np.float32)
         if self._backend.on_host:
             self.frame[0 if self.size == 1 else moments :] = OUT_OF_REACH
-            self.ground[moments * cells :] = 0.0
+            self.ground[moments * 2 * cells :] = 0.0
 
     def _cast(self, loaded: Loaded, moments: int, skinned: int) -> None:
         """The shadow map of each moment."""

@@ -180,6 +180,7 @@ class Passes:
             a["values"],
             loaded.lamps,
             a["floor"],
+            a["tops"],
             loaded.columns,
             loaded.rows,
             moments.ground,

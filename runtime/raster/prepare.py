@@ -28,6 +28,7 @@ MOVES = 2  # surface flag: skinned
 CLOSED = 4  # surface flag: its back is never seen
 CASTING = 3  # level of bodies that throws shadows
 _AHEAD = 0.35  # of a head's normal in the bind pose, along X: what counts as its front
+_SOLID = 0.05  # metres a thing has to be high to keep all of the light off what it stands on
 SHIFT = 8  # flags sit above the material in info
 
 
@@ -45,9 +46,9 @@ class Prepared:
     one_color: int32 [S], 1 where all faces of a surface have one colour
     moving_surface: index of the first skinned surface; static_faces: number of static triangles
     set_casters, casters: int32, triangles that throw shadows, static and skinned; area: float32 [K], square
-    metres a skinned vertex stands for; density: surface of the set in the air; stage: corners of what
-    stands in it; levels: heights of its floors; detail: the levels of bodies; head: uint8 [F], 1 for a
-    triangle of a head, 2 for one of its front
+    metres a skinned vertex stands for; solid: float32 [K], the same without what is flat; density: surface
+    of the set in the air; stage: corners of what stands in it; levels: heights of its floors; detail: the
+    levels of bodies; head: uint8 [F], 1 for a triangle of a head, 2 for one of its front
     """
 
     vertices: NDArray[np.float32]
@@ -67,6 +68,7 @@ class Prepared:
     set_casters: NDArray[np.int32]
     casters: NDArray[np.int32]
     area: NDArray[np.float32]
+    solid: NDArray[np.float32]
     density: Volume
     stage: tuple[NDArray[np.float64], NDArray[np.float64]]
     levels: tuple[float, ...]
@@ -187,7 +189,7 @@ def prepare(scene: RenderScene, style: Style) -> Prepared:
     one_sided = scene.static_wall == ONE_SIDED
     static_wall = np.where(one_sided, np.int32(-1), scene.static_wall)
     static_cull = closed_faces(scene.static, scene.static_object) | one_sided
-    touching = _touching_area(scene)
+    touching, solid = _touching_area(scene), _solid_area(scene)
     moving_cull = closed_faces(scene.skinned, scene.skinned_object)
     detail = with_levels(scene)
     scene, moving_cull = detail.scene, moving_cull[detail.source]
@@ -244,6 +246,7 @@ def prepare(scene: RenderScene, style: Style) -> Prepared:
         set_casters=set_casters,
         casters=(_casters(skinned, fitting, casting[moving_order]) + len(order)).astype(np.int32),
         area=touching,
+        solid=solid,
         density=density_volume(static, set_casters),
         stage=stage_bounds(static, set_casters),
         levels=scene.levels,
@@ -279,6 +282,22 @@ def _touching_area(scene: RenderScene) -> NDArray[np.float32]:
     area = _vertex_area(scene.skinned)
     area[scene.skinned.faces[_fitting(scene) > LOOSE].reshape(-1)] = 0.0
     return area
+
+
+def _solid_area(scene: RenderScene) -> NDArray[np.float32]:
+    """The same of what keeps light off the furniture it lies on: nothing of a sheet of paper."""
+    area, faces = _touching_area(scene), scene.skinned.faces
+    if not len(faces):
+        return area
+    height = scene.skinned.vertices[:, 2]
+    count = int(scene.skinned_object.max()) + 1
+    low, high = np.full(count, np.inf, np.float32), np.full(count, -np.inf, np.float32)
+    np.minimum.at(low, scene.skinned_object, height[faces].min(axis=1))
+    np.maximum.at(high, scene.skinned_object, height[faces].max(axis=1))
+    owner = np.zeros(len(area), np.int32)
+    owner[faces.reshape(-1)] = np.repeat(scene.skinned_object, 3)
+    tall = np.where(np.isfinite(low), high - low, 0.0)
+    return np.asarray(area * np.minimum(tall[owner] / _SOLID, 1.0), np.float32)
 
 
 def _flat(mesh: Mesh) -> NDArray[np.int32]:

@@ -6,7 +6,7 @@
 import taichi as ti
 
 from .geometry import bounded
-from .light import above_floor
+from .light import above_floor, floor_cell
 
 
 @ti.func
@@ -50,8 +50,8 @@ def area_near(p, low, inverse, nx, ny, nz, values: ti.template()):
 
 
 @ti.func
-def standing_near(p, m, floor: ti.template(), columns, rows, ground: ti.template()):
-    """Bilinear sample of what stands on the floor."""
+def standing_near(p, layer, floor: ti.template(), columns, rows, ground: ti.template()):
+    """Bilinear sample of what stands on the floor, or on furniture; layer: which of ``ground``."""
     x = (p.x - floor[0]) * floor[2] - 0.5
     y = (p.y - floor[1]) * floor[2] - 0.5
     out = 0.0
@@ -59,7 +59,7 @@ def standing_near(p, m, floor: ti.template(), columns, rows, ground: ti.template
         i, j = ti.cast(x, ti.i32), ti.cast(y, ti.i32)
         x -= i
         y -= j
-        at = m * rows * columns + j * columns + i
+        at = layer * rows * columns + j * columns + i
         a = ground[at] + (ground[at + 1] - ground[at]) * x
         b = ground[at + columns] + (ground[at + columns + 1] - ground[at + columns]) * x
         out = a + (b - a) * y
@@ -92,6 +92,7 @@ def sheltered(
     nz,
     values: ti.template(),
     floor: ti.template(),
+    tops: ti.template(),
     columns,
     rows,
     ground: ti.template(),
@@ -99,7 +100,16 @@ def sheltered(
 ):
     """Share of the ambient light that reaches a point of the set; deep: how much corners count."""
     out = 1.0 - deep * area_near(where + nn * 0.24, corner, inverse, nx, ny, nz, values)
-    if nn.z > 0.7 and above_floor(where.z, floor) < 0.2:
-        close = 1.0 - ti.exp(-1.6 * standing_near(where, m, floor, columns, rows, ground))
-        out *= 1.0 - ti.static(min(0.5 * deep, 0.8)) * close
+    if nn.z > 0.7:
+        layer = -1
+        if above_floor(where.z, floor) < 0.2:
+            layer = 2 * m
+        else:
+            cell = floor_cell(where, floor, columns, rows)
+            if cell >= 0 and ti.abs(where.z - tops[cell]) < 0.06:
+                layer = 2 * m + 1
+        if layer >= 0:
+            near = standing_near(where, layer, floor, columns, rows, ground)
+            close = 1.0 - ti.exp(-(1.6 + 0.9 * ti.cast(layer & 1, ti.f32)) * near)
+            out *= 1.0 - ti.static(min(0.5 * deep, 0.8)) * close
     return out

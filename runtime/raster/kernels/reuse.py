@@ -114,12 +114,14 @@ def shaded(at, m, reach: ti.template(), frame: ti.template(), size, coarse: ti.t
 
 @ti.kernel
 def standing(ground: f1, columns: ti.i32, rows: ti.i32, moments: ti.i32, bounds: i2):
-    """First and last column, first and last row [M, 4] of the floor's cells on which anything stands."""
+    """First and last column, first and last row [M, 4] of the floor's cells on which, or on what is there,
+    anything stands. ground: of :func:`.light.touch`"""
     for m in range(moments):
         left, right, low, high = columns, -1, rows, -1
         for j in range(rows):
             for i in range(columns):
-                if ground[(m * rows + j) * columns + i] != 0:
+                at = (2 * m * rows + j) * columns + i
+                if ground[at] != 0 or ground[at + rows * columns] != 0:
                     left, right = ti.min(left, i), ti.max(right, i)
                     low, high = ti.min(low, j), j
         bounds[m, 0], bounds[m, 1], bounds[m, 2], bounds[m, 3] = left, right, low, high
@@ -136,7 +138,7 @@ def stood_on(
     rows,
     ground: ti.template(),
 ):
-    """Whether anything stands on the floor where a run is."""
+    """Whether anything stands on the floor, or on furniture, where a run is."""
     out = False
     if reach[at + 5] <= reach[at + 6]:
         wide, deep = ti.cast(columns, ti.f32), ti.cast(rows, ti.f32)
@@ -157,7 +159,8 @@ def stood_on(
             else:
                 for j in range(j0, j1 + 1):
                     for i in range(i0, i1_ + 1):
-                        if ground[m * rows * columns + j * columns + i] != 0:
+                        cell = (2 * m * rows + j) * columns + i
+                        if ground[cell] != 0 or ground[cell + rows * columns] != 0:
                             out = True
     return out
 

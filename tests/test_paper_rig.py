@@ -13,7 +13,7 @@ storyboard "Paper"
 fps 24
 size 64x36
 proposals 24
-takes 24
+takes 8
 rig paper
 
 character anna = woman

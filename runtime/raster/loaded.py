@@ -190,12 +190,12 @@ def _tops(
     prepared: Prepared, arrays: dict[str, Any], cells: tuple[int, int], style: Style, backend: Backend
 ) -> Any:
     """How high the furniture is over each of these cells."""
-    from .kernels import light  # only now: it imports taichi
+    from .kernels import contact  # only now: it imports taichi
 
-    tops = backend.upload(np.full(cells[0] * cells[1], light.NOWHERE, np.float32))
+    tops = backend.upload(np.full(cells[0] * cells[1], contact.NOWHERE, np.float32))
     if style.occlusion:
         faces = (arrays["vertices"], arrays["faces"], prepared.static_faces)
-        light.find_tops(*faces, arrays["floor"], *cells, tops)
+        contact.find_tops(*faces, arrays["floor"], *cells, tops)
     return tops
 
 

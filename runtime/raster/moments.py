@@ -32,10 +32,10 @@ class Moments:
     """
 
     def __init__(self, backend: Backend, buffer: Buffers, style: Style) -> None:
-        from .kernels import geometry, light  # only now: they import taichi
+        from .kernels import contact, geometry, light  # only now: they import taichi
 
         self._backend, self._buffer, self._style = backend, buffer, style
-        self._geometry, self._light = geometry, light
+        self._geometry, self._light, self._contact = geometry, light, contact
         self.count, self.size = 1, 1
 
     def move(
@@ -66,7 +66,7 @@ class Moments:
             spare = self._buffer("spare", (moments * loaded.rows * loaded.columns,), np.float32)
             floor = (a["floor"], a["tops"], loaded.columns, loaded.rows, spare, self.ground)
             crew = self._backend.crew(moments)
-            self._light.touch(self.position, a["area"], a["solid"], moments, *floor, *crew)
+            self._contact.touch(self.position, a["area"], a["solid"], moments, *floor, *crew)
 
     def _reserve(self, loaded: Loaded, palettes: int, height: int, skinned: int) -> None:
         """Buffers, and the moment in which nobody is there."""

@@ -5,8 +5,8 @@
 
 import taichi as ti
 
+from .contact import above_floor, floor_cell, standing_near
 from .geometry import bounded
-from .light import above_floor, floor_cell
 
 
 @ti.func
@@ -46,23 +46,6 @@ def area_near(p, low, inverse, nx, ny, nz, values: ti.template()):
         a += (b - a) * y
         c += (d - c) * y
         out = a + (c - a) * x
-    return out
-
-
-@ti.func
-def standing_near(p, layer, floor: ti.template(), columns, rows, ground: ti.template()):
-    """Bilinear sample of what stands on the floor, or on furniture; layer: which of ``ground``."""
-    x = (p.x - floor[0]) * floor[2] - 0.5
-    y = (p.y - floor[1]) * floor[2] - 0.5
-    out = 0.0
-    if 0 <= x < columns - 1 and 0 <= y < rows - 1:
-        i, j = ti.cast(x, ti.i32), ti.cast(y, ti.i32)
-        x -= i
-        y -= j
-        at = layer * rows * columns + j * columns + i
-        a = ground[at] + (ground[at + 1] - ground[at]) * x
-        b = ground[at + columns] + (ground[at + columns + 1] - ground[at + columns]) * x
-        out = a + (b - a) * y
     return out
 
 

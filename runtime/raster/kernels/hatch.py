@@ -17,6 +17,7 @@ from .pattern import value_noise
 
 SPACING = 0.0085  # of the picture's height
 FIRST, SECOND = (0.61, 0.45, 0.65), (-0.52, 0.66, 0.55)  # across the strokes of the two layers
+LIGHTEST = (0.1, 0.26)  # darkness at which strokes begin, and have all of their ink
 DEEPER = 0.4  # how much lighter a set has to be to stay white where it is as gloomy as can be
 OPENER = 0.4  # and how much of their ink people lose there, so that they stand out
 SKY, BRIGHT = 0.9, 165.0  # how dark strokes make a sky, and the luma from which on it stays white
@@ -26,6 +27,12 @@ SKY, BRIGHT = 0.9, 165.0  # how dark strokes make a sky, and the luma from which
 def eased(x, low, high):
     t = bounded((x - low) / (high - low), 0.0, 1.0)
     return t * t * (3.0 - 2.0 * t)
+
+
+@ti.func
+def pressed(dark, spacing):
+    """Half the width of a stroke, pixels."""
+    return spacing * (0.07 + 0.12 * bounded(dark, 0.0, 1.0))
 
 
 @ti.func
@@ -120,19 +127,19 @@ def hatch_rows(
                     # the sky at night: strokes on a sphere that is the same from everywhere
                     dark = SKY * (BRIGHT - tone) / 255.0
                     ink = 0.0
-                    if dark > 0.1:
+                    if dark > LIGHTEST[0]:
                         far = 1.0 / ray.norm()
                         wa, wb = vec3(FIRST), vec3(SECOND)
                         ra, rb = wa.dot(ray), wb.dot(ray)
                         turn, drop = ray.dot(step) * far * far, ray.dot(down) * far * far
                         across = ti.Vector([wa.dot(step) - ra * turn, wa.dot(down) - ra * drop]).norm() * far
-                        half = spacing * (0.07 + 0.12 * bounded(dark, 0.0, 1.0))
+                        half = pressed(dark, spacing)
                         ink = strokes(ra * far, rb * far, across, spacing, half, lattice)
-                        ink *= eased(dark, 0.1, 0.26)
+                        ink *= eased(dark, LIGHTEST[0], LIGHTEST[1])
                     picture[i] = inked(ink)
                 else:
                     tone /= level
-                    dark = 1.0 - tone
+                    dark = 0.0
                     if own[t, 1] < 0:
                         # sets are quiet
                         dark = 0.85 * (1.0 - tone / (1.0 + DEEPER * gloom)) - 0.05
@@ -140,7 +147,7 @@ def hatch_rows(
                         # people: shadows whatever the colour, and what is dark itself
                         dark = (0.62 * (1.0 - tone / own[t, 0]) + own[t, 1]) * (1.0 - OPENER * gloom)
                     ink = 0.0
-                    if dark > 0.1:
+                    if dark > LIGHTEST[0]:
                         if t != last:
                             last = t
                             a, b, c = faces[t, 0], faces[t, 1], faces[t, 2]
@@ -171,9 +178,9 @@ def hatch_rows(
                         tx, ty = plane.dot(step) / facing, plane.dot(down) / facing
                         place_a, place_b = xa + z * ra, xb + z * rb
                         across_a = ti.Vector([ga.dot(step) - ra * tx, ga.dot(down) - ra * ty]).norm()
-                        half = spacing * (0.07 + 0.12 * bounded(dark, 0.0, 1.0))
+                        half = pressed(dark, spacing)
                         ink = strokes(place_a, place_b, across_a * ti.abs(z), spacing, half, lattice)
-                        ink *= eased(dark, 0.1, 0.26)
+                        ink *= eased(dark, LIGHTEST[0], LIGHTEST[1])
                         if dark > 0.46:
                             across_b = ti.Vector(
                                 [gb.dot(step) - rb * tx, gb.dot(down) - rb * ty]

@@ -115,7 +115,7 @@ def shaded(at, m, reach: ti.template(), frame: ti.template(), size, coarse: ti.t
 @ti.kernel
 def standing(ground: f1, columns: ti.i32, rows: ti.i32, moments: ti.i32, bounds: i2):
     """First and last column, first and last row [M, 4] of the floor's cells on which, or on what is there,
-    anything stands. ground: of :func:`.light.touch`"""
+    anything stands. ground: of :func:`.contact.touch`"""
     for m in range(moments):
         left, right, low, high = columns, -1, rows, -1
         for j in range(rows):

@@ -83,6 +83,23 @@ def test_library_and_stage_are_reached_from_the_page(server: Place, visit: Calla
     until(page, "document.querySelector('main img')?.naturalWidth > 600", 60)
 
 
+# What is done before the page's own script is there: a word typed, a row opened.
+EARLY = """new MutationObserver((seen, watch) => {
+  const words = document.getElementById("words"), row = document.querySelector("[data-picture*=coffee_pot]");
+  if (words) words.value = "coffee pot";
+  if (row) { row.open = true; watch.disconnect(); }
+}).observe(document, { childList: true, subtree: true });"""
+
+
+def test_what_is_typed_while_the_library_is_coming_counts(server: Place, visit: Callable[..., Any]) -> None:
+    page = visit(server.url)
+    page.add_init_script(EARLY)
+    page.goto(f"{server.url}library")
+    until(page, "document.getElementById('found').textContent.endsWith('found')")
+    assert page.locator(".row:visible .name").first.inner_text() == "coffee_pot"
+    until(page, "document.querySelector('.row[open] .drawn img')?.naturalWidth > 200", 60)
+
+
 # --- more takes ---------------------------------------------------------------------------------
 
 STORY = """\

@@ -10,19 +10,22 @@ function find() {
 }
 document.getElementById("words").addEventListener("input", find);
 document.getElementById("search").addEventListener("submit", (event) => event.preventDefault());
+async function draw(row) {
+  const box = row.querySelector(".drawn");
+  if (!row.open || box.childElementCount || box.textContent) return;
+  box.textContent = "Drawing…";
+  const answer = await fetch(row.dataset.picture).catch(() => null);
+  if (!answer || !answer.ok) {
+    box.textContent = (await answer?.json().catch(() => null))?.error || "It could not be drawn.";
+    return;
+  }
+  const picture = document.createElement("img");
+  picture.alt = row.querySelector(".name").textContent;
+  picture.src = row.dataset.picture;
+  box.replaceChildren(picture);
+}
+find(); // what was typed or opened while the page was still coming is not told again
 for (const row of rows) {
-  row.addEventListener("toggle", async () => {
-    const box = row.querySelector(".drawn");
-    if (!row.open || box.childElementCount || box.textContent) return;
-    box.textContent = "Drawing…";
-    const answer = await fetch(row.dataset.picture).catch(() => null);
-    if (!answer || !answer.ok) {
-      box.textContent = (await answer?.json().catch(() => null))?.error || "It could not be drawn.";
-      return;
-    }
-    const picture = document.createElement("img");
-    picture.alt = row.querySelector(".name").textContent;
-    picture.src = row.dataset.picture;
-    box.replaceChildren(picture);
-  });
+  row.addEventListener("toggle", () => draw(row));
+  draw(row);
 }

@@ -55,8 +55,8 @@ def box(
 ) -> Mesh:
     """A box of ``size`` (x, y, z), its foot centred on the origin.
 
-    rounding: radius of the edges in metres; steps: 1 for one bevel that the normals make look round
-        (44 triangles), 2 and more for truly round, soft edges
+    rounding: radius of the edges in metres; steps: 1 for one bevel (44 triangles) that the normals make look
+        round where it is wider than :data:`NARROW`, 2 and more for truly round, soft edges
     """
     half = np.asarray(size, np.float64) / 2
     radius = float(min(max(rounding, 0.0), half.min() * 0.98))
@@ -72,6 +72,9 @@ def box(
 
 #: For each of the six sides: the normal's axis and sign, and the two axes along it (right-handed).
 _SIDES = ((0, 1, 1, 2), (0, -1, 2, 1), (1, 1, 2, 0), (1, -1, 0, 2), (2, 1, 0, 1), (2, -1, 1, 0))
+#: Metres; bevels of at most this radius are a pixel or two wide in most shots, hit here and missed there.
+#: They are lit as one of the sides that they join, so that an edge is one line, and not a row of dashes.
+NARROW = 0.0201
 _Arrays = tuple[NDArray[np.float64], NDArray[np.int64], NDArray[np.float64]]
 
 
@@ -91,7 +94,11 @@ def _sharp_box(half: NDArray[np.float64]) -> _Arrays:
 
 
 def _bevelled_box(half: NDArray[np.float64], radius: float) -> _Arrays:
-    """Six flat sides, twelve bevels, eight corners; the bevels take the sides' normals and look round."""
+    """Six flat sides, twelve bevels, eight corners.
+
+    Bevels take the normals of both sides and look round; up to :data:`NARROW` that of one, the top or the
+    bottom before the others.
+    """
     vertices: list[NDArray[np.float64]] = []
     normals: list[NDArray[np.float64]] = []
     faces: list[tuple[int, ...]] = []
@@ -104,10 +111,9 @@ def _bevelled_box(half: NDArray[np.float64], radius: float) -> _Arrays:
             index[axis, (corner[0], corner[1], corner[2])] = len(vertices)
             vertices.append(point)
             normals.append(np.eye(3)[axis] * signs[axis])
-    points = np.array(vertices)
 
     def add(*ring: int) -> None:
-        corners = points[list(ring)]
+        corners = np.array([vertices[i] for i in ring])
         normal = np.cross(corners[1] - corners[0], corners[2] - corners[0])
         order = ring if normal @ corners.mean(0) > 0 else ring[::-1]
         faces.extend((order[0], order[i], order[i + 1]) for i in range(1, len(order) - 1))
@@ -120,6 +126,19 @@ def _bevelled_box(half: NDArray[np.float64], radius: float) -> _Arrays:
             bit[axis], bit[u], bit[v] = (sign + 1) // 2, a, b
             ring.append(index[axis, (bit[0], bit[1], bit[2])])
         add(*ring)
+    copies: dict[tuple[int, int], int] = {}
+
+    def bevel(axis: int, *ring: int) -> None:
+        """A bevel that, where it is narrow, goes with the side along an axis."""
+        if radius <= NARROW:
+            for vertex in ring:
+                if (vertex, axis) not in copies:
+                    copies[vertex, axis] = len(vertices)
+                    vertices.append(vertices[vertex])
+                    normals.append(np.eye(3)[axis] * np.sign(vertices[vertex][axis]))
+            ring = tuple(copies[vertex, axis] for vertex in ring)
+        add(*ring)
+
     for axis in range(3):  # bevels run along this axis, between the sides u and v
         u, v = (axis + 1) % 3, (axis + 2) % 3
         for i in bits:
@@ -129,11 +148,11 @@ def _bevelled_box(half: NDArray[np.float64], radius: float) -> _Arrays:
                 low[v] = high[v] = j
                 high[axis] = 1
                 k0, k1 = (low[0], low[1], low[2]), (high[0], high[1], high[2])
-                add(index[u, k0], index[u, k1], index[v, k1], index[v, k0])
+                bevel(max(u, v), index[u, k0], index[u, k1], index[v, k1], index[v, k0])
     for corner in np.ndindex(2, 2, 2):
         key = (corner[0], corner[1], corner[2])
-        add(index[0, key], index[1, key], index[2, key])
-    return points, np.array(faces), np.array(normals)
+        bevel(2, index[0, key], index[1, key], index[2, key])
+    return np.array(vertices), np.array(faces), np.array(normals)
 
 
 def _round_box(half: NDArray[np.float64], radius: float, steps: int) -> _Arrays:

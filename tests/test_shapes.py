@@ -15,6 +15,7 @@ from runtime.mesh import Mesh
 
 SHAPES = {
     "box": (shapes.box((1, 2, 3)), 6.0),
+    "narrowly bevelled box": (shapes.box((1, 2, 3), 0.01), 6.0),
     "bevelled box": (shapes.box((1, 2, 3), 0.1), 5.88),
     "soft box": (shapes.box((1, 2, 3), 0.3, 4), 5.55),
     "cylinder": (shapes.cylinder(0.5, 2.0), math.pi * 0.25 * 2),
@@ -114,3 +115,20 @@ def test_any_star_can_be_extruded(rays: list[tuple[float, float]]) -> None:
     x, y = np.array(outline).T
     area = 0.5 * abs(np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y))
     assert shapes.volume(shapes.extrude(outline, 2.0)) == pytest.approx(2 * area, rel=1e-3)
+
+
+def normals_of_faces(rounding: float) -> tuple[np.ndarray, np.ndarray]:
+    """Normals at the corners of all faces of a box [F, 3, 3], and those of its flat sides alone."""
+    mesh = shapes.box((0.6, 0.4, 0.02 + 2 * rounding), rounding)
+    corners = mesh.normals[mesh.faces]
+    return corners, corners[:12]
+
+
+def test_narrow_bevels_are_lit_as_one_side_and_wide_ones_look_round() -> None:
+    for rounding in (0.002, 0.01, 0.02):
+        corners, sides = normals_of_faces(rounding)
+        assert len(corners) == 44
+        assert (corners == corners[:, :1]).all(), "a bevel's light differs from that of both sides"
+        assert {tuple(n) for n in corners[:, 0]} == {tuple(n) for n in sides[:, 0]}
+    corners, _ = normals_of_faces(0.03)
+    assert (corners != corners[:, :1]).any(axis=(1, 2)).sum() == 32

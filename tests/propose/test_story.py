@@ -202,3 +202,13 @@ def test_a_line_becomes_a_grid_that_fills_its_budget() -> None:
     assert shown <= stories
     assert len(shown) >= len(stories) - 1 >= 3  # one goes where no camera sees it well
     assert grid.rejected["in_wall"] > 0
+
+
+def test_a_thing_is_looked_for_at_its_middle() -> None:
+    played = play("anna at counter\n(anna pick up coffee_pot) / (static medium eye-level)\n")
+    story = played.stories(0)[0]
+    pot = next(o for o in built("apartment").objects if o.path[-1] == "coffee_pot")
+    middle = np.add(pot.low, pot.high) / 2
+    assert pot.high[2] - pot.low[2] > 0.1
+    np.testing.assert_allclose(story.interest[0][0], middle, atol=0.01)
+    assert np.linalg.norm(story.interest[0][-1] - middle) > 0.1, "and where it is carried"

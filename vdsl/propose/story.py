@@ -18,6 +18,7 @@ from runtime.body.skeleton import JOINT, Skeleton
 from runtime.motion.perform import perform
 from runtime.motion.types import ActionClip, Actor, SceneMotion, Task
 from runtime.nav import Discs
+from runtime.world import World
 
 from ..lang.definitions.action import ActionDef
 from ..lang.diagnostics import Report
@@ -67,7 +68,7 @@ def tell(
             opened = {k: p.open for k, p in motion.end_props.items() if p.hinge is not None}
             world = state.world.opened(opened)
             end = replace(state, world=world, actors=motion.end_actors, props=motion.end_props)
-        proposals.append(_proposal(index, name, path, motion, _interest(errands, motion)))
+        proposals.append(_proposal(index, name, path, motion, _interest(errands, motion, state.world)))
     return Told(tuple(proposals), end)
 
 
@@ -198,8 +199,13 @@ def _perform(
     return perform(actors, tasks, state.props, fps, seed, duration, feelings)
 
 
-def _interest(errands: Mapping[str, Errand], motion: SceneMotion) -> tuple[NDArray[np.float64], ...]:
-    """Paths of what the line is about besides whoever acts first: its targets, and all others who act."""
+def _interest(
+    errands: Mapping[str, Errand], motion: SceneMotion, world: World
+) -> tuple[NDArray[np.float64], ...]:
+    """Paths of what the line is about besides whoever acts first: its targets, and all others who act.
+
+    Of what moves by a hinge the path of its handle, of other things that of their middle.
+    """
     out: list[NDArray[np.float64]] = []
     names = dict.fromkeys(list(errands)[1:])
     for item in list(errands.values())[:1]:
@@ -210,7 +216,10 @@ def _interest(errands: Mapping[str, Errand], motion: SceneMotion) -> tuple[NDArr
                 names[point.character] = None
             elif point.object in motion.props:
                 hinge, moved = motion.end_props[point.object].hinge, motion.props[point.object].astype(float)
+                mesh = world.objects[point.object].mesh
                 middle = np.zeros(3) if hinge is None else hinge.handle
+                if hinge is None and mesh is not None:
+                    middle = (mesh.vertices.min(axis=0) + mesh.vertices.max(axis=0)) / 2
                 out.append(moved[:, :3, :3] @ middle + moved[:, :3, 3])
             else:
                 out.append(np.tile(point.position, (motion.frames, 1)).astype(float))

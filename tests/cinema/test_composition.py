@@ -1,25 +1,14 @@
-"""Heads at the borders of the frame, and heads behind each other."""
+"""Heads and bodies at the borders of the frame."""
 
 from __future__ import annotations
-
-from dataclasses import replace
 
 import numpy as np
 import pytest
 from filmset import shot, skeleton, standing, story, world
 
-from vdsl.cinema.composition import _behind_heads
 from vdsl.cinema.track import camera_axes, project
 from vdsl.propose.cameras import Filming, propose_cameras
 from vdsl.propose.rejection import REASONS, SOFT
-
-
-def test_a_head_behind_a_nearer_one_is_not_seen() -> None:
-    """Seen from 2 m and 3 m: the far one behind the near one, beside it, and well over it."""
-    depth = np.array([[[2.0, 3.0]]])
-    for far, hidden in (((0.0, 0.0), True), ((0.2, 0.0), False), ((0.0, 0.3), True), ((0.0, -0.2), False)):
-        xy = np.array([[[(0.0, 0.0), far]]])
-        assert _behind_heads(xy, depth).tolist() == [[[False, hidden]]], far
 
 
 @pytest.mark.parametrize("movement", ["pedestal-up", "pedestal-down", "pan-left", "dolly-right"])
@@ -60,25 +49,6 @@ def test_close_ups_that_cut_the_head_are_not_blamed_for_it() -> None:
     filming = Filming(world(), {"anna": body}, 24.0, 3)
     said = shot("static", "extreme-close-up", "eye-level", proposals=8)
     assert {c.measures["head_cropped"] for c in propose_cameras(said, [told], filming).cameras} == {0.0}
-
-
-def test_a_two_shot_shows_both_at_its_first_frame_and_its_last() -> None:
-    """Two who stand a metre apart: no arc begins or ends with one of them behind the other."""
-    body = skeleton(1.7)
-    apart = {"anna": np.array((0.0, 0.5, 0.0)), "ben": np.array((0.0, -0.5, 0.0))}
-    acted = {n: standing(body, np.tile(at, (48, 1)), np.zeros(48), 0.0) for n, at in apart.items()}
-    filming = Filming(world(), dict.fromkeys(acted, body), 24.0, 3)
-    said = replace(
-        shot("arc-left", "full", "eye-level", proposals=24), view="two-shot", whose=("anna", "ben")
-    )
-    grid = propose_cameras(said, [story(acted)], filming)
-    assert len(grid.cameras) >= 8
-    assert grid.rejected["wrong_view"] > 0
-    for camera in grid.cameras:
-        for t in (0, -1):
-            eyes = [at + np.array((0.0, 0.0, 1.6)) - camera.track.position[t] for at in apart.values()]
-            a, b = (np.arctan2(e[1], e[0]) for e in eyes)
-            assert abs((a - b + np.pi) % (2 * np.pi) - np.pi) > np.radians(1.5)
 
 
 def test_nothing_that_is_not_as_asked_is_let_back_in() -> None:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from functools import cache
 
 import numpy as np
+import pytest
 
 from runtime.body.proportions import make_skeleton
 from runtime.body.spec import BodySpec
@@ -212,3 +213,37 @@ def test_a_thing_is_looked_for_at_its_middle() -> None:
     assert pot.high[2] - pot.low[2] > 0.1
     np.testing.assert_allclose(story.interest[0][0], middle, atol=0.01)
     assert np.linalg.norm(story.interest[0][-1] - middle) > 0.1, "and where it is carried"
+
+
+AWAY = "anna at counter\nben at fridge facing window\n"
+
+
+def looks(played: Played, who: str = "ben", at: str = "anna", line: int = 0) -> float:
+    """Radians between the way somebody faces at first and the way to another."""
+    acted = played.stories(line)[0].performances
+    to = acted[at].position[0] - acted[who].position[0]
+    off = acted[who].heading[0] - np.arctan2(to[1], to[0])
+    return float(abs(np.angle(np.exp(1j * off))))
+
+
+def test_who_is_looked_past_faces_the_one_filmed() -> None:
+    plain = play(AWAY + "(anna wave) / (static medium eye-level)\n")
+    assert looks(plain) > 1.0
+    assert looks(play(AWAY + "(anna wave) / (static medium eye-level ots ben)\n")) < 0.1
+
+
+def test_any_shot_of_the_line_counts() -> None:
+    """All shots of a line see the same performance."""
+    assert looks(play(AWAY + "(anna wave) / (static full eye-level) / (static medium ots ben)\n")) < 0.1
+
+
+def test_the_next_line_begins_as_this_one_ended() -> None:
+    lines = "(anna wave) / (static medium ots ben)\n(anna nod) / (static full eye-level)\n"
+    assert looks(play(AWAY + lines), line=1) < 0.3
+
+
+def test_who_acts_or_sits_stays_as_the_line_has_it() -> None:
+    both = "(anna wave) + (ben wave) / (static medium eye-level"
+    assert looks(play(AWAY + f"{both} ots ben)\n")) == pytest.approx(looks(play(AWAY + f"{both})\n")))
+    sits = "anna at counter\nben at chair_2 sitting\n(anna wave) / (static medium eye-level"
+    assert looks(play(sits + " ots ben)\n")) == pytest.approx(looks(play(sits + ")\n")))

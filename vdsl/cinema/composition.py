@@ -5,8 +5,6 @@ One number a take, over the part of its time in which the subject is meant to be
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -14,11 +12,8 @@ from .framing import Array, stretch
 from .sizes import CORE, PAPER_RADIUS
 from .subject import Subject
 from .takes import Bools, Picture, Takes, key_sample, mean_of, within
-from .track import project
 from .vectors import length
 
-_HAIR, _CHEEK = 0.1, 0.02  # metres of a head to its side that hide, and of a face that is not to be hidden
-_HEAD = 0.11  # half a head's width and its hair, metres
 _NEARLY = 0.9  # share of a head in the frame that is as good as all of it
 _BROAD = 0.27  # half of somebody's breadth with the arms and a little air, metres
 
@@ -54,7 +49,7 @@ def framing(
         "headroom": np.clip(mean_of(crown, window), -1.0, 2.0),
         "headroom_error": np.minimum(mean_of(np.abs(crown - top[:, None]), window), 2.0),
         "head_cut": _beyond(-crown, window),
-        "head_cropped": np.maximum(_cropped(takes, picture), _halved(takes, subject, picture)),
+        "head_cropped": broken(takes, subject, picture),
         "feet_cut": np.where(whole, _beyond(sole - 1.0, window), 0.0),
         "thirds_error": np.minimum(mean_of(np.abs(eyes[..., 1] - 1 / 3), window), 2.0),
         "lead_room": _lead(takes, subject, at, eyes[..., 0]),
@@ -86,6 +81,12 @@ def _beyond(over: Array, window: Bools) -> Array:
     return np.clip(np.where(window, over, 0.0).max(axis=1), 0.0, 2.0)
 
 
+def broken(takes: Takes, subject: Subject, picture: Picture) -> Array:
+    """How much a border of the frame cuts the head, or a side of it the body, at the first frame or the last,
+    0..1: [P]."""
+    return np.maximum(_cropped(takes, picture), _halved(takes, subject, picture))
+
+
 def _cropped(takes: Takes, picture: Picture) -> Array:
     """0 where all of the head is in the frame or none, at the take's first frame and its last, 1 where half
     of it is; 0 for sizes that cut the head. [P]"""
@@ -114,60 +115,6 @@ def _halved(takes: Takes, subject: Subject, picture: Picture) -> Array:
     share = np.where((depth > 0.05) & (y > 0.0) & (y < 1.0), np.clip(inside / (2 * half), 0.0, 1.0), 0.0)
     whole = np.array([s.upper == "crown" for s in takes.sizes])
     return np.where(whole, (4.0 * share * (1.0 - share)).max(axis=1), 0.0)
-
-
-def everybody_seen(
-    takes: Takes,
-    subject: Subject,
-    at: NDArray[np.int64],
-    camera: Array,
-    axes: Array,
-    seen_from: Callable[[Array], Bools],
-) -> Array:
-    """Whether all heads are in the frame and seen, or the near head at its side and off the face: a share of
-    the window, [P]."""
-    shoulder = takes.view == "ots" and subject.via is not None
-    heads = [subject.via] if shoulder and subject.via is not None else list(subject.heads.values())
-    if not heads:
-        return np.ones(len(camera))
-    points = np.stack([head[at] for head in heads], axis=1)
-    xy, depth = project(points[None], camera, axes, takes.track.focal[:, at], takes.track.sensor)
-    if not shoulder:
-        half = np.array(takes.track.sensor) / takes.track.focal[:, at][..., None]
-        seen = within(xy, depth, 0.03) & seen_from(points) & ~_behind_heads(xy * half[:, :, None], depth)
-        return _held(np.asarray(seen.all(axis=-1)), takes.window)
-    aside, high = np.abs(xy[..., 0, 0] - 0.5), xy[..., 0, 1]
-    nearer = (depth[..., 0] > 0.2) & (depth[..., 0] < 0.75 * length(camera - subject.landmarks["eyes"][at]))
-    face, away = project(
-        subject.landmarks["eyes"][at][None, :, None],
-        camera,
-        axes,
-        takes.track.focal[:, at],
-        takes.track.sensor,
-    )
-    wide = _HAIR / np.maximum(depth[..., 0], 0.1) + _CHEEK / np.maximum(away[..., 0], 0.1)
-    wide = wide * takes.track.focal[:, at] / takes.track.sensor[0]
-    nearer &= np.abs(xy[..., 0, 0] - face[..., 0, 0]) > wide
-    there = nearer & (aside > 0.16) & (aside < 0.62) & (high > -0.6) & (high < 0.75)
-    return _held(np.asarray(there), takes.window)
-
-
-def _behind_heads(xy: Array, depth: Array) -> Bools:
-    """Which heads are behind another one, or behind its shoulders: [P, F, K]. xy: [P, F, K, 2], metres aside
-    and down at a metre's distance; depth: [P, F, K]."""
-    wide = _HEAD / np.maximum(depth, 0.1)
-    aside = np.abs(xy[..., :, None, 0] - xy[..., None, :, 0])  # [P, F, of this head, by that one]
-    over = xy[..., None, :, 1] - xy[..., :, None, 1]
-    nearer = depth[..., None, :] < depth[..., :, None] - 0.1
-    covered = nearer & (aside < wide[..., None, :] + 0.5 * wide[..., :, None]) & (over < wide[..., None, :])
-    return np.asarray(covered.any(axis=-1))
-
-
-def _held(there: Bools, window: Bools) -> Array:
-    """Share of the window [P] in which something holds; 0 where it does not at the window's first frame or
-    its last, which are what cuts show."""
-    rows, last = np.arange(len(there)), window.shape[1] - 1 - window[:, ::-1].argmax(axis=1)
-    return np.where(there[rows, window.argmax(axis=1)] & there[rows, last], mean_of(there, window), 0.0)
 
 
 def _lead(takes: Takes, subject: Subject, at: NDArray[np.int64], x: Array) -> Array:

@@ -16,12 +16,13 @@ from numpy.typing import NDArray
 from runtime.world import World
 
 from . import space
-from .composition import everybody_seen, framing, size_error
+from .composition import framing, size_error
 from .framing import Array
 from .score import geometry_score as geometry_score
 from .sight import backdrop_gaps, clear_lines, clear_of_people, hidden_walls
 from .subject import SIGHT, Subject
-from .takes import Bools, Picture, Takes, key_sample, mean_of, samples, within
+from .takes import Bools, Picture, Takes, key_sample, mean_of, samples, visibility, within
+from .together import everybody_measured, everybody_seen
 from .track import CameraTrack, camera_axes, project
 from .vectors import dot, length
 
@@ -93,7 +94,7 @@ def measure(takes: Takes, subject: Subject, world: World, fps: float) -> Measure
 
     seen = seen_from(sight)
     values["view"] = everybody_seen(takes, subject, at, camera, axes, seen_from)
-    values |= _visibility(takes, inside[:, :, sight_index], seen)
+    values |= visibility(takes, inside[:, :, sight_index], seen)
     values["walk_missed"] = _missed(points[:, names.index("waist")], inside[:, :, sight_index] & seen)
     shown = _shown(takes, world, at, camera, axes, hidden, others)
     values["interest"] = _interest(takes, shown)
@@ -102,6 +103,8 @@ def measure(takes: Takes, subject: Subject, world: World, fps: float) -> Measure
     values["foreground"] = _foreground(takes, world, at, camera, axes, picture, hidden)
     values |= _motion(track, takes.roll, fps)
     values["face"] = _face(takes, subject, at, camera, points[:, names.index("eyes")])
+    if len(subject.members) > 1:
+        values |= everybody_measured(takes, subject, at, camera, axes, seen_from)
     rows, key = np.arange(len(camera)), key_sample(takes, at)
     values["elevation"] = np.degrees(-rotation[rows, key, 1])
     values["height"] = camera[rows, key, 2] - subject.floor
@@ -114,23 +117,6 @@ def measure(takes: Takes, subject: Subject, world: World, fps: float) -> Measure
     people = space.to_people(camera, others)
     values["clearance"] = np.minimum(np.minimum(room.object, room.shown), people)
     return Measured(values, hidden, room.shown, people)
-
-
-def _visibility(takes: Takes, inside: Bools, seen: Bools) -> dict[str, Array]:
-    window = takes.window[:, :, None]
-    shown = (inside & window).sum(axis=(1, 2))
-    clear = (inside & seen & window).sum(axis=(1, 2))
-    some = (inside & seen).sum(axis=2) / np.maximum(inside.sum(axis=2), 1)
-    first, last = takes.window.argmax(axis=1), len(some[0]) - 1 - takes.window[:, ::-1].argmax(axis=1)
-    rows = np.arange(len(some))
-    head = (inside[:, :, 0] & seen[:, :, 0] & takes.window).sum(axis=1) / np.maximum(
-        takes.window.sum(axis=1), 1
-    )
-    return {
-        "visibility": clear / np.maximum(shown, 1),
-        "head_visible": head,
-        "ends_visible": np.minimum(some[rows, first], some[rows, last]),
-    }
 
 
 def _missed(waist: Array, seen: Bools) -> Array:

@@ -7,7 +7,7 @@ subject, so that framing and measuring need not ask which it is.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,8 +28,9 @@ class Subject:
     landmarks: by name, float64 [T, 3]: crown, hairline, brow, eyes, nose, chin, collar, pocket, waist,
         thigh, knees, feet, hand_l, hand_r
     face: float64 [T, 3], unit direction the face points; zero for what has none
-    heads: float64 [T, 3] each, eyes of everybody a shot of several has to show, by name; {} for a single one
+    members: everybody a shot of several has to show, who acts first of all; () for a single one
     via: float64 [T, 3], the head over whose shoulder the camera looks, or the eyes it looks through
+    via_face: float64 [T, 3], unit direction its face points
     """
 
     name: str
@@ -39,12 +40,18 @@ class Subject:
     heading: NDArray[np.float64]
     landmarks: dict[str, NDArray[np.float64]]
     face: NDArray[np.float64]
-    heads: dict[str, NDArray[np.float64]] = field(default_factory=dict)
+    members: tuple[Subject, ...] = ()
     via: NDArray[np.float64] | None = None
+    via_face: NDArray[np.float64] | None = None
 
     @property
     def frames(self) -> int:
         return len(self.position)
+
+    @property
+    def heads(self) -> dict[str, NDArray[np.float64]]:
+        """Eyes of the members by name, float64 [T, 3] each; {} for a single one."""
+        return {one.name: one.landmarks["eyes"] for one in self.members}
 
     @property
     def floor(self) -> float:
@@ -57,9 +64,9 @@ class Subject:
             return self
         shift = np.array((0.0, 0.0, up))
         moved = {name: path + shift for name, path in self.landmarks.items()}
-        heads = {name: head + shift for name, head in self.heads.items()}
+        members = tuple(one.shifted(up) for one in self.members)
         via = None if self.via is None else self.via + shift
-        return replace(self, position=self.position + shift, landmarks=moved, heads=heads, via=via)
+        return replace(self, position=self.position + shift, landmarks=moved, members=members, via=via)
 
     def travel(self) -> float:
         """Metres from where it starts to the farthest it gets from there on the floor."""
@@ -136,7 +143,7 @@ def group(people: Sequence[Subject]) -> Subject:
         position=np.mean([one.position for one in people], axis=0),
         landmarks=landmarks,
         face=face,
-        heads={one.name: one.landmarks["eyes"] for one in people},
+        members=tuple(people),
     )
 
 

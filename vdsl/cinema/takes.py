@@ -76,3 +76,22 @@ def within(xy: Array, depth: Array, margin: float) -> Bools:
     """Which points are before the camera and inside the frame by so much of its size."""
     x, y, far = xy[..., 0], xy[..., 1], 1.0 - margin
     return np.asarray((depth > 0.05) & (x > margin) & (x < far) & (y > margin) & (y < far))
+
+
+def visibility(takes: Takes, inside: Bools, seen: Bools) -> dict[str, Array]:
+    """Measures of how much of a subject is seen, by which of its points [P, F, K] are in the frame, and which
+    nothing hides; the eyes come first."""
+    window = takes.window[:, :, None]
+    shown = (inside & window).sum(axis=(1, 2))
+    clear = (inside & seen & window).sum(axis=(1, 2))
+    some = (inside & seen).sum(axis=2) / np.maximum(inside.sum(axis=2), 1)
+    first, last = takes.window.argmax(axis=1), len(some[0]) - 1 - takes.window[:, ::-1].argmax(axis=1)
+    rows = np.arange(len(some))
+    head = (inside[:, :, 0] & seen[:, :, 0] & takes.window).sum(axis=1) / np.maximum(
+        takes.window.sum(axis=1), 1
+    )
+    return {
+        "visibility": clear / np.maximum(shown, 1),
+        "head_visible": head,
+        "ends_visible": np.minimum(some[rows, first], some[rows, last]),
+    }

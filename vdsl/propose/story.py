@@ -26,6 +26,7 @@ from ..lang.ir import Shot, StoryLine
 from ..library import Catalog
 from ..stage.actions import build_clip
 from .advice import advise
+from .beholding import beholding
 from .cameras import Filming, propose_cameras
 from .drawing import generator
 from .state import SceneState, opening_state
@@ -61,6 +62,7 @@ def tell(
     """
     report = report if report is not None else Report()
     shot = shot if shot is not None else (line.shots[0] if line.shots else None)
+    state = beholding(state, line)
     errands = _errands(state, line, filming, shot, report)
     proposals, end = [], state
     for index, (name, path, motion) in enumerate(_motions(state, errands, filming, shot, most)):
@@ -77,6 +79,7 @@ def motions(
 ) -> list[tuple[str, SceneMotion]]:
     """The motions :func:`tell` makes of a line, by the names of their variants, with all the engine says."""
     shot = line.shots[0] if line.shots else None
+    state = beholding(state, line)
     errands = _errands(state, line, filming, shot, report)
     return [(name, motion) for name, _, motion in _motions(state, errands, filming, shot, most)]
 

@@ -58,7 +58,8 @@ def subject_of(shot: Shot, story: StoryProposal, filming: Filming) -> Subject:
     owner = shot.whose[0] if shot.view and shot.whose else ""
     if owner not in story.performances or owner == subject.name:
         return subject
-    return replace(subject, via=_person(owner, story, filming).landmarks["eyes"])
+    near = _person(owner, story, filming)
+    return replace(subject, via=near.landmarks["eyes"], via_face=near.face)
 
 
 def _person(name: str, story: StoryProposal, filming: Filming) -> Subject:

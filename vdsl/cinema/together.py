@@ -1,0 +1,134 @@
+"""Measures of takes of several people: whether all are seen, over whose shoulder it looks, and the worst off
+of those who are one subject together.
+
+Halfway between two people there is nobody: what is seen of a two-shot is what is seen of each. Assumes a
+subject with members, who acts first of all.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .composition import broken
+from .framing import Array
+from .sight import clear_of_people
+from .subject import SIGHT, Subject
+from .takes import Bools, Picture, Takes, mean_of, visibility, within
+from .track import project
+from .vectors import dot, length
+
+_HAIR, _CHEEK = 0.1, 0.02  # metres of a head to its side that hide, and of a face that is not to be hidden
+_HEAD = 0.11  # half a head's width and its hair, metres
+#: Cosine to the camera from which on one over whose shoulder it looks shows it a face, and what that takes
+#: away: it is a fault, but none for which there is to be no take at all.
+_FACES, _TO_US = 0.35, 0.25
+_MARGIN = 0.2  # radius of one of them in the way of another, metres
+#: Who acts counts as much of the faces as that, all others share the rest; and a face turned to the camera
+#: does not make up for a back: from this cosine on (nearly in profile) more is no better.
+_WHO_ACTS, _ENOUGH = 0.6, 0.3
+
+
+def everybody_seen(
+    takes: Takes,
+    subject: Subject,
+    at: NDArray[np.int64],
+    camera: Array,
+    axes: Array,
+    seen_from: Callable[[Array], Bools],
+) -> Array:
+    """Whether all heads are in the frame and seen, or the near head of a view over a shoulder is where it
+    belongs: a share of the window, [P]; 1 for a single one."""
+    if takes.view == "ots" and subject.via is not None:
+        return _over_a_shoulder(takes, subject, subject.via[at], at, camera, axes)
+    if not subject.members:
+        return np.ones(len(camera))
+    points = np.stack([head[at] for head in subject.heads.values()], axis=1)
+    xy, depth = project(points[None], camera, axes, takes.track.focal[:, at], takes.track.sensor)
+    half = np.array(takes.track.sensor) / takes.track.focal[:, at][..., None]
+    seen = within(xy, depth, 0.03) & seen_from(points) & ~_behind_heads(xy * half[:, :, None], depth)
+    return _held(np.asarray(seen.all(axis=-1)), takes.window)
+
+
+def _over_a_shoulder(
+    takes: Takes, subject: Subject, near: Array, at: NDArray[np.int64], camera: Array, axes: Array
+) -> Array:
+    """Share of the window [P] in which the near head [F, 3] is at the frame's side and off the face; less
+    where it is a face that it shows the camera."""
+    focal, eyes = takes.track.focal[:, at], subject.landmarks["eyes"][at]
+    (xy, depth), (face, away) = (
+        project(head[None, :, None], camera, axes, focal, takes.track.sensor) for head in (near, eyes)
+    )
+    aside, high = np.abs(xy[..., 0, 0] - 0.5), xy[..., 0, 1]
+    nearer = (depth[..., 0] > 0.2) & (depth[..., 0] < 0.75 * length(camera - eyes))
+    wide = _HAIR / np.maximum(depth[..., 0], 0.1) + _CHEEK / np.maximum(away[..., 0], 0.1)
+    nearer &= np.abs(xy[..., 0, 0] - face[..., 0, 0]) > wide * focal / takes.track.sensor[0]
+    there = nearer & (aside > 0.16) & (aside < 0.62) & (high > -0.6) & (high < 0.75)
+    shows = np.zeros(len(camera))
+    if subject.via_face is not None:
+        to_camera = camera - near
+        cosine = dot(to_camera, subject.via_face[None, at]) / np.maximum(length(to_camera), 1e-9)
+        shows = mean_of(cosine > _FACES, takes.window)
+    return _held(np.asarray(there), takes.window) * (1.0 - _TO_US * shows)
+
+
+def _behind_heads(xy: Array, depth: Array) -> Bools:
+    """Which heads are behind another one, or behind its shoulders: [P, F, K]. xy: [P, F, K, 2], metres aside
+    and down at a metre's distance; depth: [P, F, K]."""
+    wide = _HEAD / np.maximum(depth, 0.1)
+    aside = np.abs(xy[..., :, None, 0] - xy[..., None, :, 0])  # [P, F, of this head, by that one]
+    over = xy[..., None, :, 1] - xy[..., :, None, 1]
+    nearer = depth[..., None, :] < depth[..., :, None] - 0.1
+    covered = nearer & (aside < wide[..., None, :] + 0.5 * wide[..., :, None]) & (over < wide[..., None, :])
+    return np.asarray(covered.any(axis=-1))
+
+
+def _held(there: Bools, window: Bools) -> Array:
+    """Share of the window [P] in which something holds; 0 where it does not at the window's first frame or
+    its last, which are what cuts show."""
+    rows, last = np.arange(len(there)), window.shape[1] - 1 - window[:, ::-1].argmax(axis=1)
+    return np.where(there[rows, window.argmax(axis=1)] & there[rows, last], mean_of(there, window), 0.0)
+
+
+def everybody_measured(
+    takes: Takes,
+    subject: Subject,
+    at: NDArray[np.int64],
+    camera: Array,
+    axes: Array,
+    seen_from: Callable[[Array], Bools],
+) -> dict[str, Array]:
+    """Of every member what :func:`~vdsl.cinema.measures.measure` would say, and of these the worst.
+
+    seen_from: which of points [F, K, 3] nothing but the members hides, bool [P, F, K]
+    """
+    focal = takes.track.focal[:, at]
+    found: list[dict[str, Array]] = []
+    for one in subject.members:
+        names = list(one.landmarks)
+        points = np.stack([one.landmarks[n][at] for n in names], axis=1)
+        picture = Picture(names, *project(points[None], camera, axes, focal, takes.track.sensor))
+        sight = [names.index(n) for n in SIGHT]
+        inside = within(picture.xy[:, :, sight], picture.depth[:, :, sight], 0.0)
+        bodies = [
+            (other.position[at], other.landmarks["crown"][at], _MARGIN)
+            for other in subject.members
+            if other is not one
+        ]
+        seen = seen_from(points[:, sight]) & clear_of_people(camera, points[:, sight], bodies)
+        found.append(visibility(takes, inside, seen) | {"head_cropped": broken(takes, one, picture)})
+    worst = {"head_cropped": np.max, "visibility": np.min, "head_visible": np.min, "ends_visible": np.min}
+    out = {k: np.asarray(of([each[k] for each in found], axis=0)) for k, of in worst.items()}
+    return out | {"face": _faces(takes, subject, at, camera)}
+
+
+def _faces(takes: Takes, subject: Subject, at: NDArray[np.int64], camera: Array) -> Array:
+    total = np.zeros(len(camera))
+    for i, one in enumerate(subject.members):
+        to_camera = camera - one.landmarks["eyes"][at]
+        cosine = dot(to_camera, one.face[None, at]) / np.maximum(length(to_camera), 1e-9)
+        share = _WHO_ACTS if i == 0 else (1.0 - _WHO_ACTS) / max(len(subject.members) - 1, 1)
+        total += share * mean_of(np.minimum(cosine, _ENOUGH), takes.window)
+    return total

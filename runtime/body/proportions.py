@@ -14,6 +14,17 @@ from numpy.typing import NDArray
 from .skeleton import JOINT, JOINTS, Skeleton
 from .spec import BodySpec
 
+#: How far hats, and hair where no hat is on it, rise above the crown as they are modelled, in heads; others
+#: hardly rise above short hair.
+_SHORT = 0.083
+_RISES = {
+    "cap": 0.15, "police-cap": 0.17, "beanie": 0.20, "beret": 0.14, "brimmed-hat": 0.25, "straw-hat": 0.14,
+    "toque": 0.46, "hard-hat": 0.27, "fire-helmet": 0.36, "helmet": 0.23, "crown": 0.22, "tricorn": 0.18,
+    "wizard-hat": 1.01, "nurse-cap": 0.14, "scrub-cap": 0.12, "hood": 0.21, "veil": 0.13,
+    "knight-helmet": 0.45, "space-helmet": 0.23,
+    "bun": 0.12, "curly": 0.19, "afro": 0.25, "mohawk": 0.27, "topknot": 0.20,
+}  # fmt: skip
+
 
 @dataclass(frozen=True)
 class Proportions:
@@ -93,7 +104,8 @@ def make_skeleton(spec: BodySpec) -> Skeleton:
     positions: NDArray[np.float64] = np.zeros((len(JOINTS), 3))
     for name, at in bind.items():
         positions[JOINT[name]] = at
-    return Skeleton(positions, h)
+    rise = _RISES.get(spec.hat, _RISES.get(spec.hair, _SHORT))
+    return Skeleton(positions, h, head * max(0.0, rise - _SHORT))
 
 
 def _face(hx: float, chin: float, head: float) -> dict[str, tuple[float, float, float]]:

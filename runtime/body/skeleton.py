@@ -90,10 +90,12 @@ class Skeleton:
 
     bind: float64 [J, 3], joint positions in the bind pose, metres, model coordinates
     height: standing height to the crown, metres
+    above: how far a hat or hair rises above that of somebody with short hair, metres
     """
 
     bind: NDArray[np.float64]
     height: float
+    above: float = 0.0
 
     @property
     def offsets(self) -> NDArray[np.float64]:

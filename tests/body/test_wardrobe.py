@@ -11,6 +11,7 @@ from scipy.spatial import cKDTree
 
 from runtime.body.build import Body, make_body
 from runtime.body.pieces import PARTS
+from runtime.body.proportions import make_skeleton
 from runtime.body.skeleton import JOINT, PALETTE
 from runtime.body.spec import (
     BACKWEAR,
@@ -121,6 +122,20 @@ def test_hats_sit_on_the_head_and_go_with_it() -> None:
         pivot = body.skeleton.bind[JOINT["head"]]
         rigid = (body.mesh.vertices[hat] - pivot) @ turned.T + pivot
         assert np.abs(moved - rigid).max() < 1e-4
+
+
+@pytest.mark.parametrize("word", [*HATS, "afro", "bun", "curly", "mohawk", "topknot"])
+def test_the_skeleton_knows_how_high_hats_and_hair_rise(word: str) -> None:
+    """Above that of somebody with short hair, to a centimetre."""
+    spec = BodySpec(hat=word) if word in HATS else BodySpec(hair=word)
+    body, short = make_body(spec), make_body(BodySpec(hair="short"))
+    rises = body.mesh.vertices[:, 2].max() - short.mesh.vertices[:, 2].max()
+    assert body.skeleton.above == pytest.approx(max(rises, 0.0), abs=0.01)
+
+
+def test_under_a_hat_hair_does_not_count() -> None:
+    assert make_skeleton(BodySpec(hair="afro", hat="cap")).above == make_skeleton(BodySpec(hat="cap")).above
+    assert make_skeleton(BodySpec(hair="afro", hat="tiara")).above > 0.02, "on a tiara it does"
 
 
 def _outside_the_back(body: Body, pose: dict[str, NDArray[np.float64]]) -> NDArray[np.float64]:

@@ -51,7 +51,7 @@ POSTURES = {
     "upstairs": (HOUSE % "", "(anna wave)", True),
 }
 PLACED = {"sits": "anna at chair sitting", "lies": "anna at bed lying"}
-BODIES = ("woman(height 1.52m)", "man(height 1.94m, build heavy)", "girl")
+BODIES = ("woman(height 1.52m)", "man(height 1.94m, build heavy, hat toque)", "girl")
 #: Every posture by one of the bodies, in turn, and the first and the last posture by all of them.
 PERFORMED = [
     (posture, body)
@@ -69,13 +69,14 @@ STYLES = (
     "(push+arc-right full eye-level)",
     "(static medium eye-level) roll 12deg", "(static extreme-wide high-angle)",
 )  # fmt: skip
+TOQUE = 0.377  # heads by which it stands higher than short hair
 #: docs/cinema.md, Rigs: landmark and line from the top, upper and lower.
 LINES = {
     "extreme-close-up": ("brow", 0.22, "nose", 0.72), "big-close-up": ("hairline", 0.03, "chin", 0.97),
-    "close-up": ("crown", 0.08, "collar", 1.0), "medium-close-up": ("crown", 0.09, "pocket", 1.0),
-    "medium": ("crown", 0.10, "waist", 1.0), "cowboy": ("crown", 0.09, "thigh", 1.0),
-    "medium-long": ("crown", 0.09, "knees", 1.0), "full": ("crown", 0.08, "soles", 0.94),
-    "wide": ("crown", 0.27, "soles", 0.85), "extreme-wide": ("crown", 0.46, "soles", 0.74),
+    "close-up": ("crown", 0.08, "collar", 1.0), "medium-close-up": ("top", 0.09, "pocket", 1.0),
+    "medium": ("top", 0.10, "waist", 1.0), "cowboy": ("top", 0.09, "thigh", 1.0),
+    "medium-long": ("top", 0.09, "knees", 1.0), "full": ("top", 0.08, "soles", 0.94),
+    "wide": ("top", 0.27, "soles", 0.85), "extreme-wide": ("top", 0.46, "soles", 0.74),
 }  # fmt: skip
 
 
@@ -97,6 +98,7 @@ def landmark(name: str, acted: Performance, body: Skeleton, frame: int) -> Array
         return np.array((*feet[:, :2].mean(axis=0), low))
     bone, x, z = {
         "crown": ("head", bind[JOINT["head"]][0], h),
+        "top": ("head", bind[JOINT["head"]][0], h + (TOQUE * head if body.above > 0 else 0.0)),
         "hairline": ("head", eye[0], chin + 0.86 * head),
         "brow": ("head", eye[0], chin + 0.60 * head),
         "nose": ("head", eye[0], chin + 0.28 * head),

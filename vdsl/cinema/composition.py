@@ -98,7 +98,7 @@ def _cropped(takes: Takes, picture: Picture) -> Array:
     out = out + np.clip((middle + radius - high) / (2 * radius), 0.0, 1.0)
     inside = np.clip((1.0 - out), 0.0, 1.0).prod(axis=-1)
     inside = np.where(picture.depth[:, (0, -1)].min(axis=-1) > 0.05, np.minimum(inside / _NEARLY, 1.0), 0.0)
-    whole = np.array([s.upper == "crown" for s in takes.sizes])
+    whole = np.array([s.whole_head for s in takes.sizes])
     return np.where(whole, (4.0 * inside * (1.0 - inside)).max(axis=1), 0.0)
 
 
@@ -113,7 +113,7 @@ def _halved(takes: Takes, subject: Subject, picture: Picture) -> Array:
     half = _BROAD * focal / (takes.track.sensor[0] * np.maximum(depth, 0.05))
     inside = np.minimum(x + half, 1.0) - np.maximum(x - half, 0.0)
     share = np.where((depth > 0.05) & (y > 0.0) & (y < 1.0), np.clip(inside / (2 * half), 0.0, 1.0), 0.0)
-    whole = np.array([s.upper == "crown" for s in takes.sizes])
+    whole = np.array([s.whole_head for s in takes.sizes])
     return np.where(whole, (4.0 * share * (1.0 - share)).max(axis=1), 0.0)
 
 

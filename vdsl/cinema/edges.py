@@ -85,8 +85,8 @@ def edges(
 @lru_cache(maxsize=1)
 def ladder() -> tuple[float, ...]:
     """Height of the picture at a standing subject, in shares of its height, by size, tightest first."""
-    at = {"crown": 1.0, "hairline": 0.98, "brow": 0.95, "nose": 0.91, "chin": 0.87, "collar": 0.805}
-    at |= {"pocket": 0.715, "waist": 0.60, "thigh": 0.42, "knees": 0.28, "feet": 0.0}
+    at = {"top": 1.0, "crown": 1.0, "hairline": 0.98, "brow": 0.95, "nose": 0.91, "chin": 0.87}
+    at |= {"collar": 0.805, "pocket": 0.715, "waist": 0.60, "thigh": 0.42, "knees": 0.28, "feet": 0.0}
     sizes = [SIZES[name] for name in _RUNGS]
     return tuple(sorted((at[size.upper] - at[size.lower]) / size.share for size in sizes))
 

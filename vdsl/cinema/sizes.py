@@ -2,6 +2,8 @@
 
 A size names an upper and a lower landmark of the posed body and the heights in the picture they are put
 on, 0 at the top and 1 at the bottom (CINEMA.md's table: the lower line cuts at collar, waist, feet …).
+Hats and high hair, from ``crown`` to ``top``, are in the frame from the medium close-up on; a close-up cuts
+them.
 """
 
 from __future__ import annotations
@@ -27,6 +29,11 @@ class Size:
         """Height of the stretch between the landmarks as a share of the frame's."""
         return self.bottom - self.top
 
+    @property
+    def whole_head(self) -> bool:
+        """Whether all of the head is to be in the frame."""
+        return self.upper in ("crown", "top")
+
 
 #: For people.
 SIZES: dict[str, Size] = {
@@ -35,13 +42,13 @@ SIZES: dict[str, Size] = {
         Size("extreme-close-up", "brow", "nose", 0.22, 0.72),
         Size("big-close-up", "hairline", "chin", 0.03, 0.97),
         Size("close-up", "crown", "collar", 0.08, 1.0),
-        Size("medium-close-up", "crown", "pocket", 0.09, 1.0),
-        Size("medium", "crown", "waist", 0.10, 1.0),
-        Size("cowboy", "crown", "thigh", 0.09, 1.0),
-        Size("medium-long", "crown", "knees", 0.09, 1.0),
-        Size("full", "crown", "feet", 0.08, 0.94),
-        Size("wide", "crown", "feet", 0.27, 0.85),
-        Size("extreme-wide", "crown", "feet", 0.46, 0.74),
+        Size("medium-close-up", "top", "pocket", 0.09, 1.0),
+        Size("medium", "top", "waist", 0.10, 1.0),
+        Size("cowboy", "top", "thigh", 0.09, 1.0),
+        Size("medium-long", "top", "knees", 0.09, 1.0),
+        Size("full", "top", "feet", 0.08, 0.94),
+        Size("wide", "top", "feet", 0.27, 0.85),
+        Size("extreme-wide", "top", "feet", 0.46, 0.74),
     )
 }
 

@@ -25,8 +25,8 @@ class Subject:
 
     kind: ``person``, ``thing`` or ``place``; height: standing height of a person, metres
     position: float64 [T, 3], point on the floor below it (the paper's p); heading: float64 [T], radians
-    landmarks: by name, float64 [T, 3]: crown, hairline, brow, eyes, nose, chin, collar, pocket, waist,
-        thigh, knees, feet, hand_l, hand_r
+    landmarks: by name, float64 [T, 3]: top (of a hat or high hair), crown, hairline, brow, eyes, nose, chin,
+        collar, pocket, waist, thigh, knees, feet, hand_l, hand_r
     face: float64 [T, 3], unit direction the face points; zero for what has none
     members: everybody a shot of several has to show, who acts first of all; () for a single one
     via: float64 [T, 3], the head over whose shoulder the camera looks, or the eyes it looks through
@@ -104,6 +104,7 @@ def person(
     feet = soles.mean(axis=1)
     feet[:, 2] = np.maximum(soles[:, :, 2].min(axis=1) - bind[JOINT["toe_l"]][2], np.asarray(position)[:, 2])
     landmarks = {
+        "top": carried("head", skull, h + skeleton.above),
         "crown": carried("head", skull, h),
         "hairline": carried("head", eye[0], chin + 0.86 * head),
         "brow": carried("head", eye[0], chin + 0.60 * head),
@@ -132,8 +133,8 @@ def group(people: Sequence[Subject]) -> Subject:
     for name in first.landmarks:
         points = np.stack([one.landmarks[name] for one in people])
         landmarks[name] = points.mean(axis=0)
-        if name in ("crown", "feet"):
-            end = np.max if name == "crown" else np.min
+        if name in ("top", "crown", "feet"):
+            end = np.min if name == "feet" else np.max
             landmarks[name][:, 2] = end(points[..., 2], axis=0)
     face = np.mean([one.face for one in people], axis=0)
     face = face / np.maximum(np.linalg.norm(face, axis=1, keepdims=True), 0.5)
@@ -183,8 +184,16 @@ def _box(
         out[:, 2] += share * tall
         return out
 
-    share = {"crown": 0.5, "hairline": 0.4, "brow": 0.2, "eyes": 0.0, "nose": 0.0, "chin": 0.0, "collar": 0.0}
-    share |= {"pocket": 0.0, "waist": 0.0, "thigh": -0.1, "knees": 0.0, "feet": -0.5, "hand_l": 0.0}
+    share = {"top": 0.5, "crown": 0.5, "hairline": 0.4, "brow": 0.2, "eyes": 0.0, "nose": 0.0, "chin": 0.0}
+    share |= {
+        "collar": 0.0,
+        "pocket": 0.0,
+        "waist": 0.0,
+        "thigh": -0.1,
+        "knees": 0.0,
+        "feet": -0.5,
+        "hand_l": 0.0,
+    }
     share["hand_r"] = 0.0
     position = centre.copy()
     position[:, 2] = floor

@@ -42,6 +42,10 @@ _MEASURED, _COMPARED = 64, 200
 _WIDE_PACE = 0.1  # of the learning rate, for layers that read all that describes a shot
 #: Of the learning rate, for what reads guides, where pictures are looked at: many more clips taught it.
 _KEPT_PACE = 0.1
+#: Seconds of work that a checkpoint has to be worth: short epochs do not all write one.
+_WORTH_KEEPING = 20.0
+#: Clips looked at together when eight bits are fitted.
+_TOGETHER = 8
 Report = Callable[[dict[str, Any]], None]
 
 
@@ -110,7 +114,7 @@ def train(
     state = out / "checkpoint.pt"
     learning = {"model": model, "keys": keys, "dictionary": dictionary, "optimizer": optimizer}
     done, step = _resume(state, config, learning)
-    clock = time.monotonic()
+    clock = kept = time.monotonic()
 
     with (out / "log.jsonl").open("a", encoding="utf-8") as log:
         for epoch in range(done, len(schedule)):
@@ -122,8 +126,8 @@ def train(
             before, total = (sum(lengths[n] for n in alike if n < m) for m in (epoch, len(schedule)))
             for number, batch in enumerate(batches(data, pools[epoch], phase, config, epoch, moved)):
                 for group in optimizer.param_groups:
-                    kept = _KEPT_PACE if group["guided"] and phase.size else 1.0
-                    group["lr"] = kept * group["pace"] * learning_rate(config, before + number, total)
+                    pace = _KEPT_PACE if group["guided"] and phase.size else 1.0
+                    group["lr"] = pace * group["pace"] * learning_rate(config, before + number, total)
 
                 parts = _losses(model, keys, dictionary, batch, config, device)
                 loss = parts[0] + config.class_weight * parts[1] + config.contrast_weight * parts[2]
@@ -153,7 +157,9 @@ def train(
             line |= {"steps": sum(lengths), "seconds": round(time.monotonic() - clock, 1)}
             _tell(log, line, report)
             draw_curves(out)
-            _keep(state, config, learning, epoch + 1, step)
+            if epoch + 1 == len(schedule) or time.monotonic() - kept >= _WORTH_KEEPING:
+                _keep(state, config, learning, epoch + 1, step)
+                kept = time.monotonic()
 
         # Small pictures leave batch norm with the wrong statistics for full ones.
         calibrate(model, data, framed, config, device)
@@ -199,7 +205,11 @@ def int8_ranges(model: ShotRanker, data: Dataset, clips: NDArray[np.int64], seed
     """What computing in eight bits needs to know of a network: its outputs on some of the clips."""
     some = np.random.default_rng(seed).permutation(clips)[:_MEASURED]
     size, at = model.config.inner, (0, data.frames // 2)
-    pictures = [normalised(torch.from_numpy(data.clip(int(i), at, size))) for i in some]
+    groups = (some[i : i + _TOGETHER] for i in range(0, len(some), _TOGETHER))
+    pictures = [
+        normalised(torch.from_numpy(np.concatenate([data.clip(int(i), at, size) for i in group])))
+        for group in groups
+    ]
     return measured_ranges(fold_batch_norm(model.backbone), pictures)
 
 

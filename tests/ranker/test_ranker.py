@@ -74,7 +74,8 @@ def test_two_hundred_clips_are_learnt_by_heart(tmp_path: Path) -> None:
     assert (tmp_path / "out" / "curves.svg").stat().st_size > 1000
 
 
-def test_training_goes_on_where_it_stopped(tmp_path: Path) -> None:
+def test_training_goes_on_where_it_stopped(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("ranker.train._WORTH_KEEPING", 0.0)
     write_clips(tmp_path / "data", 20)
     config = replace(TINY, phases=(Phase(3, SIZE, 2, 1, 8),), augment=True, held_out=0.2)
 

@@ -39,7 +39,7 @@ def blind(out: Path, lines: int, weights: Path | None = None, seed: int = 0, dev
     out.mkdir(parents=True, exist_ok=True)
     judge, camerawork = DiscriminatorJudge(weights, device), Camerawork(device)
     rng, cells, key = np.random.default_rng(seed), [], []
-    for number, (scene, shown) in enumerate(_lines(seed, lines), 1):
+    for number, (scene, shown) in enumerate(held_out_lines(seed, lines), 1):
         scored = _scored(judge, camerawork, scene, shown)
         chosen = int(scored.order.argmax())
         other = int(rng.choice([i for i in range(len(shown.cameras)) if i != chosen]))
@@ -60,11 +60,14 @@ def blind(out: Path, lines: int, weights: Path | None = None, seed: int = 0, dev
     return path
 
 
-def _lines(seed: int, lines: int) -> Iterator[tuple[Scene, ProposalGrid]]:
+def held_out_lines(
+    seed: int, lines: int, proposals: int = _PROPOSALS
+) -> Iterator[tuple[Scene, ProposalGrid]]:
+    """Lines of stories that no training saw, with their proposals: the first few of every story."""
     troupe, number, found = Troupe(seed + _SEED), TEST_EVERY - 1, 0
     while found < lines:
         taken = 0
-        for scene in troupe.scenes(number, _PROPOSALS, "test"):
+        for scene in troupe.scenes(number, proposals, "test"):
             if found < lines and taken < _A_STORY and len(scene.grids[0].cameras) >= _LEAST:
                 yield scene, scene.grids[0]
                 found, taken = found + 1, taken + 1

@@ -22,7 +22,14 @@ WEIGHTS = {
 }
 
 #: Measures of what spoils a picture, and the share of the score each takes away where it is 1.
-PENALTIES = {"backdrop_gap": 0.5, "foreground": 0.6, "empty": 0.3, "walk_missed": 0.4, "head_cropped": 0.2}
+PENALTIES = {
+    "backdrop_gap": 0.5,
+    "foreground": 0.6,
+    "empty": 0.3,
+    "walk_missed": 0.4,
+    "head_cropped": 0.2,
+    "hands_missed": 0.15,
+}
 
 #: How much a full point of the geometry score moves the odds of a take, in logits: as a prior. By this much
 #: designer's picks that are hidden among proposals come higher than by the pictures or the geometry alone.

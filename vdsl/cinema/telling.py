@@ -46,6 +46,7 @@ NOTES = {
     "interest": Note("share", "what is acted on, or with whom, is seen too", 0.6, 1.0),
     "empty": Note("share", "there is always something to see", 0.0, 0.05),
     "walk_missed": Note("share", "the walk is seen", 0.0, 0.3),
+    "hands_missed": Note("share", "one sees what hands do", 0.0, 0.5),
     "foreground": Note("share", "nothing near is in the way", 0.0, 0.1),
     "face": Note("cosine", "the face is turned to the camera", 0.0, 1.0),
     "clearance": Note("m", "the camera has room around it", 0.5, _ANY),
@@ -74,6 +75,7 @@ _COMPARED = {
     "foreground": ("less in the way", "more in the way", "foreground"),
     "empty": ("less empty", "emptier", "empty"),
     "walk_missed": ("more of the walk", "less of the walk", "walk_missed"),
+    "hands_missed": ("more of what hands do", "less of what hands do", "hands_missed"),
     "head_cropped": (
         "head and body less cut at the ends",
         "head or body cut more at the start or the end",
@@ -172,6 +174,7 @@ def faults(measures: Measures, movement: str) -> tuple[str, ...]:
         (m["head_cut"] > 0.02 and not near, "cuts the head"),
         (m["face"] < -0.4, "sees the back of the head"),
         (m["walk_missed"] > 0.5, f"misses {number('walk_missed', m['walk_missed'])} of the walk"),
+        (m["hands_missed"] > 0.7, "does not show what the hands do"),
         (m["foreground"] > 0.2, f"has something near over {covered} of the picture"),
         (m["backdrop_gap"] > 0.05, "misses a wall behind the subject"),
         (m["interest"] < 0.5, "does not show all the line is about"),

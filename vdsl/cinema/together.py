@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from .composition import broken
 from .framing import Array
+from .gestures import hands_missed
 from .sight import clear_of_people
 from .subject import SIGHT, Subject
 from .takes import Bools, Picture, Takes, mean_of, visibility, within
@@ -119,8 +120,11 @@ def everybody_measured(
         ]
         seen = seen_from(points[:, sight]) & clear_of_people(camera, points[:, sight], bodies)
         found.append(visibility(takes, inside, seen) | {"head_cropped": broken(takes, one, picture)})
+        shown = (inside & seen)[:, :, [SIGHT.index(name) for name in ("hand_l", "hand_r")]]
+        found[-1]["hands_missed"] = hands_missed(takes, one, at, camera, shown)
     worst = {"head_cropped": np.max, "visibility": np.min, "head_visible": np.min, "ends_visible": np.min}
     out = {k: np.asarray(of([each[k] for each in found], axis=0)) for k, of in worst.items()}
+    out["hands_missed"] = found[0]["hands_missed"]  # of who acts
     return out | {"face": _faces(takes, subject, at, camera)}
 
 

@@ -15,6 +15,7 @@ from .judging import GeometryJudge
 from .script import Checked
 from .selection import choose_takes
 from .why import ShotFacts, TakeFacts
+from .witness import best, counted, vet_tracks
 
 
 def facts_in_memory(checked: Checked, wanted: str) -> ShotFacts:
@@ -26,7 +27,8 @@ def facts_in_memory(checked: Checked, wanted: str) -> ShotFacts:
     grid = propose(line, shot, act.state, act.filming, advised=True)
     judge = GeometryJudge()
     scores = judge.scores(grid.cameras, None)
-    chosen = choose_takes(grid.cameras, scores, shot.takes)
+    vetted = vet_tracks(grid, scores, best(grid, shot.takes), shot, act.filming)
+    chosen = choose_takes(grid.cameras, vetted.order, shot.takes)
     takes = tuple(_take(grid, act, shot, i, rank, float(scores[i])) for rank, i in enumerate(chosen, start=1))
     return ShotFacts(
         shot.id,
@@ -35,7 +37,7 @@ def facts_in_memory(checked: Checked, wanted: str) -> ShotFacts:
         {"movement": list(shot.movements), "scale": list(shot.scales), "angle": list(shot.angles)},
         judge.name,
         len(grid.cameras),
-        grid.rejected,
+        counted(grid.rejected, vetted.failed, chosen),
         takes,
         asdict(grid.advice) if grid.advice else None,
         "memory",

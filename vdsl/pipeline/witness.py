@@ -72,6 +72,33 @@ def vet(
     chosen: gives those about to be kept, by the scores and by what has failed so far
     Notes the share of what was looked at among its measures.
     """
+    _, shot, filming = scene
+
+    def wrong(fresh: Sequence[int]) -> dict[int, str]:
+        failed = _unlike(grid, fresh, shot, filming)
+        for i, share in zip(fresh, _shares(grid, fresh, scene, camerawork), strict=True):
+            if np.isnan(share):
+                continue
+            measures = grid.cameras[i].measures
+            measures[MEASURE] = float(share)
+            if share < min(_PROMISED, measures["visibility"]) - _SLACK:
+                failed[i] = REASON
+        return failed
+
+    return _vetted(scores, chosen, wrong)
+
+
+def vet_tracks(
+    grid: ProposalGrid, scores: NDArray[np.float64], chosen: Chosen, shot: Shot, filming: Filming
+) -> Vetted:
+    """As :func:`vet`, by tracks alone: nothing is drawn."""
+    return _vetted(scores, chosen, lambda fresh: _unlike(grid, fresh, shot, filming))
+
+
+def _vetted(
+    scores: NDArray[np.float64], chosen: Chosen, wrong: Callable[[Sequence[int]], dict[int, str]]
+) -> Vetted:
+    """wrong: of those looked at now, why some are not to be kept"""
     order = np.asarray(scores, float).copy()
     looked: set[int] = set()
     failed: dict[int, str] = {}
@@ -80,21 +107,17 @@ def vet(
         if not fresh:
             break
         looked.update(fresh)
-        failed |= dict.fromkeys((i for i in fresh if not _as_asked(grid, i, scene)), UNLIKE)
-        for i, share in zip(fresh, _shares(grid, fresh, scene, camerawork), strict=True):
-            if np.isnan(share):
-                continue
-            measures = grid.cameras[i].measures
-            measures[MEASURE] = float(share)
-            if share < min(_PROMISED, measures["visibility"]) - _SLACK:
-                failed[i] = REASON
+        failed |= wrong(fresh)
         order[[i for i in fresh if i in failed]] -= _OUT
     return Vetted(order, failed)
 
 
-def _as_asked(grid: ProposalGrid, i: int, scene: tuple[StagedScene, Shot, Filming]) -> bool:
+def _unlike(grid: ProposalGrid, some: Sequence[int], shot: Shot, filming: Filming) -> dict[int, str]:
+    return dict.fromkeys((i for i in some if not _as_asked(grid, i, shot, filming)), UNLIKE)
+
+
+def _as_asked(grid: ProposalGrid, i: int, shot: Shot, filming: Filming) -> bool:
     """Whether a take of somebody came out as the line's words; through somebody's eyes there is no angle."""
-    _, shot, filming = scene
     camera = grid.cameras[i]
     subject = subject_of(shot, next(s for s in grid.story if s.index == camera.story), filming)
     if subject.kind != "person" or filming.rig == "paper":

@@ -86,7 +86,7 @@ def test_turns_go_the_named_way(movement: str, sign: int) -> None:
     k = 2 if movement.startswith("pan") else 1
     for c in filmed(still_story(skeleton()), 1.7, movement=movement):
         turned = sign * np.degrees(c.track.rotation[-1, k] - c.track.rotation[0, k])
-        assert 30.0 - 1e-6 <= turned <= 60.0 + 1e-6
+        assert 12.0 - 1e-6 <= turned <= 60.0 + 1e-6
 
 
 @pytest.mark.parametrize(

@@ -52,4 +52,4 @@ def test_static_cameras_have_no_easing_and_the_papers_have_its_lens() -> None:
 def test_two_movements_at_once_have_both_ones_variables() -> None:
     space = {v.symbol: str(v) for v in subspace("push+pan-left", "full", "eye-level", LENS, EASE).free}
     assert {"μ", "turn", "ending", "λ", "λ′"} <= set(space)
-    assert space["turn"] == "turn ∈ [30, 60] °"
+    assert space["turn"] == "turn ∈ [12, 60] °"

@@ -44,7 +44,7 @@ MEASURES = (
     "lead_room",  # more room ahead of the face than behind: −1..1, 0 where it looks at the camera
     "thirds_error",  # distance of the eyes from the upper third, share of the frame's height
     "interest",  # share of the other points that matter (thing in hand, partner) in the frame and not hidden
-    "empty",  # share of the time in which neither the subject's head nor any of those points is in the frame
+    "empty",  # share of the time in which neither any of the subject nor any of those points is in the frame
     "walk_missed",  # share of the way the subject goes on which nothing of it is seen; 0 for a step or two
     "hands_missed",  # share of the time hands are at work in which neither is seen; 0 for close-ups
     "foreground",  # share of the picture covered by something much nearer than the subject
@@ -103,7 +103,7 @@ def measure(takes: Takes, subject: Subject, world: World, fps: float) -> Measure
     values["hands_missed"] = hands_missed(takes, subject, at, camera, in_sight[:, :, hands])
     shown = _shown(takes, world, at, camera, axes, hidden, others)
     values["interest"] = _interest(takes, shown)
-    somebody = inside[:, :, names.index("eyes")] | shown.any(axis=-1)
+    somebody = in_sight.any(axis=-1) | inside[:, :, names.index("eyes")] | shown.any(axis=-1)
     values["empty"] = 1.0 - somebody.mean(axis=1)
     values["foreground"] = _foreground(takes, world, at, camera, axes, picture, hidden)
     values |= _motion(track, takes.roll, fps)

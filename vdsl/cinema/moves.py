@@ -36,6 +36,7 @@ class Draw:
     before: share of a dolly's or pedestal's way that lies before the framed position (1: ends on it)
     key: 0 where the framing is of the first frame, 1 where of the last
     on: True where a tilt or pan ends on the subject
+    kept: True where a tilt or pan is to have its subject in the picture all the time
     rise: metres the aim would be raised if the frame shrank to nothing: pushes, pulls and zooms raise it as
         the frame grows smaller, so that a head stays where it is in the picture; 0 for ``rig paper``
     """
@@ -52,6 +53,7 @@ class Draw:
     before: Array
     key: NDArray[np.int64]
     on: NDArray[np.bool_]
+    kept: NDArray[np.bool_]
     rise: Array
 
 

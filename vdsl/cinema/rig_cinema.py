@@ -61,7 +61,7 @@ def frame(
         leaving room ahead
     roll: radians the cameras lean; level: [P] height the camera is to have, which θ is solved for (as far
         as it goes); NaN for those that keep theirs
-    aside: [P] column the eyes are put on, instead of ``lead``
+    aside: [P] column the eyes are put on, instead of ``lead``; NaN for those that are put by that
     """
     upper, lower = subject.landmarks[size.upper][at], subject.landmarks[size.lower][at]
     across = subject.landmarks["eyes"][at]
@@ -71,7 +71,9 @@ def frame(
 
     def solved(polar: Array) -> tuple[Array, Array]:
         right = basis(polar, phi)[0]
-        column = 0.5 - lead * dot(subject.face[at], right) if aside is None else aside
+        column = 0.5 - lead * dot(subject.face[at], right)
+        if aside is not None:
+            column = np.where(np.isnan(aside), column, aside)
         lines = (size.top * ones, size.bottom * ones, column)
         return solve(upper, lower, across, polar, phi, focal, film, lines, roll)
 

@@ -25,7 +25,7 @@ WEIGHTS = {
 PENALTIES = {
     "backdrop_gap": 0.5,
     "foreground": 0.6,
-    "empty": 0.3,
+    "empty": 0.6,
     "walk_missed": 0.4,
     "head_cropped": 0.2,
     "hands_missed": 0.15,

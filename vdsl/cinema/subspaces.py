@@ -34,6 +34,8 @@ TURNS = {
     "roll": (15.0, 40.0),
     "whip-pan": (60.0, 100.0),
 }
+#: The least of a tilt or pan of ``rig cinema`` that keeps its subject in the picture, degrees.
+LEAST_TURN = 12.0
 #: Ways as shares of what the frame shows at the subject: a dolly's of its width, a pedestal's of its height.
 TRAVELS = {"dolly": (0.22, 0.42), "pedestal": (0.28, 0.5)}
 #: Shares of a dolly's or pedestal's way that lie before the framed position.
@@ -81,9 +83,10 @@ def mu_range(movement: str, cinema: bool = True) -> tuple[float, float]:
     return (_SEEN, OUTWARDS[1]) if cinema else OUTWARDS
 
 
-def turn_range(kind: str) -> tuple[float, float]:
+def turn_range(kind: str, cinema: bool = True) -> tuple[float, float]:
     """Degrees that a family turns."""
-    return TURNS.get(kind, TURNS["pan"])
+    low, high = TURNS.get(kind, TURNS["pan"])
+    return (LEAST_TURN if cinema and kind in ("tilt", "pan") else low), high
 
 
 def subspace(
@@ -141,7 +144,7 @@ def _own(movement: str, kind: str, cinema: bool) -> list[Variable]:
             Variable("μ", "distance, or width of the frame, at the end", "", *mu_range(movement, cinema))
         )
     if kind in TURNS:
-        out.append(Variable("turn", "angle turned", "°", *turn_range(kind)))
+        out.append(Variable("turn", "angle turned", "°", *turn_range(kind, cinema)))
     if kind in ("tilt", "pan"):
         out.append(Variable("ending", "on the subject, or off it", "", grid=("on", "off")))
     if kind in TRAVELS:

@@ -12,6 +12,8 @@ from ..cinema.track import CameraTrack
 
 Array = NDArray[np.float64]
 
+_TURNED = np.radians(3.0)  # of a tilt that has left where it was
+
 
 @dataclass(frozen=True, eq=False)
 class Shooting:
@@ -76,8 +78,14 @@ class Shooting:
             if kinds & {"whip-pan"}:
                 out[p] = time >= 0.65
             elif kinds & {"tilt", "pan"}:
-                out[p] = time >= 0.75 if self.draw.on[p] else time <= 0.25
-                out[p, -1 if self.draw.on[p] else 0] = True
+                on, kept = self.draw.on[p], self.draw.kept[p] or self.second.kept[p]
+                if kept and "pan" in kinds:
+                    continue
+                out[p] = time >= 0.75 if on else time <= 0.25
+                if kept:  # it leaves the face for the body when it turns, and is not to wait for that
+                    pitch = self.track.rotation[p, at, 1]
+                    out[p] &= np.abs(pitch - pitch[-1 if on else 0]) < _TURNED
+                out[p, -1 if on else 0] = True
             elif kinds & {"dolly", "pedestal"} and self.draw.travel[p] > 0 and self.draw.before[p] != 0.5:
                 out[p] = time >= 0.4 if self.draw.before[p] == 1.0 else time <= 0.6
         return out

@@ -18,6 +18,7 @@ from ..cinema.subspaces import ASIDE, AZIMUTHS, FILM, LEAD, TRAVELS, mu_range, t
 from ..lang.ir import Shot
 from .candidates import Shooting, joined
 from .drawing import Sample
+from .turns import columns, from_the_face, keep
 from .views import eyes_track, over_shoulder, through_eyes
 
 Array = NDArray[np.float64]
@@ -81,7 +82,9 @@ def _shoot_one(
     i = rows[local]
     words, last = of_camera(movement).split("+"), subject.frames - 1
     kind = family(words[0])
-    key, on = _keys(words, sample.key[i].copy(), sample.on[i], rig, shot.view, asked_high(shot, sample, i))
+    keeps = rig == "cinema" and shot.view not in ("pov", "ots")
+    on = from_the_face(sample.on[i], words, subject, sample.turn[i]) if keeps else sample.on[i]
+    key, on = _keys(words, sample.key[i].copy(), on, rig, shot.view, asked_high(shot, sample, i))
     at = np.where(key == 1, last, 0)
     mu = _mu(words[0], sample.mu[i], rig)
     mu_too = _mu(words[-1], sample.mu[i][::-1], rig)
@@ -122,7 +125,8 @@ def _shoot_one(
                 subject, size, path, at, shot.lens, film, on, sample.travel[i], framed
             )
         else:
-            framing = framed(phi, focal)
+            side = columns(words, subject, asked, focal, film, on, sample.turn[i]) if keeps else None
+            framing = framed(phi, focal, side)
         r, theta, offset, lifted = framing.r * sample.reach[i], framing.theta, framing.offset, framing.lifted
         rise = _rise(subject, size, at, r * film[1] / focal, theta)
         height = np.zeros(len(i))
@@ -130,11 +134,15 @@ def _shoot_one(
             if family(word) in ("push", "pull"):
                 r = np.where(key == 1, r / factor, r)
     travel, before, key = _travel(subject, words[0], sample, i, r, focal, film, phi, key)
-    turn = _turn(kind, sample.turn[i])
-    draw = Draw(r, theta, phi, focal, offset, sample.lam[i], mu, turn, travel, before, key, on, rise)
+    turn, kept = _turn(kind, sample.turn[i]), np.zeros(len(i), bool)
+    draw = Draw(r, theta, phi, focal, offset, sample.lam[i], mu, turn, travel, before, key, on, kept, rise)
     travel, before, _ = _travel(subject, words[-1], sample, i, r, focal, film, phi, key)
     turn = _turn(family(words[-1]), 1.0 - sample.turn[i])
     second = replace(draw, lam=sample.lam_too[i], mu=mu_too, turn=turn, travel=travel, before=before)
+    if keeps:
+        draw = keep(draw, words[0], words, subject, path, asked, film, sample.turn[i])
+        if len(words) > 1:
+            second = keep(second, words[-1], words, subject, path, asked, film, 1.0 - sample.turn[i])
     if shot.view == "pov" and subject.via is not None:
         track = eyes_track(subject, path, draw, film, shot.roll, kind == "follow", fps)
     elif len(words) > 1 or kind in FURTHER:
@@ -192,7 +200,7 @@ def _mu(movement: str, u: Array, rig: str) -> Array:
 
 
 def _turn(kind: str, u: Array) -> Array:
-    low, high = turn_range(kind)
+    low, high = turn_range(kind, cinema=False)
     return np.radians(low + (high - low) * u)
 
 

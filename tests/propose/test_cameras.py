@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from filmset import shot, skeleton, standing, still_story, story, thing, walking_story, world
@@ -95,7 +97,8 @@ def test_cameras_keep_out_of_other_people() -> None:
         f"ben{k}": standing(BODY, np.tile((0.9 * np.cos(k), 0.9 * np.sin(k), 0.0), (frames, 1)), still)
         for k in range(6)
     }
-    grid = propose_cameras(shot(scale="close-up"), [story({"anna": acted, **ring})], filming())
+    everybody = replace(filming(), skeletons=dict.fromkeys(("anna", *ring), BODY))
+    grid = propose_cameras(shot(scale="close-up"), [story({"anna": acted, **ring})], everybody)
     assert grid.rejected["in_person"] + grid.rejected["subject_hidden"] > 10
 
 

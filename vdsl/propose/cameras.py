@@ -213,9 +213,8 @@ def _takes(
     if subject.kind == "thing" and shot.focus is not None:
         item = find_object(filming.world, shot.focus)
         ignore = item.id if item is not None else None
-    others = pillars_of(
-        shot, story, {subject.name, *subject.heads, *(shot.whose if shot.view == "pov" else ())}
-    )
+    owner = shot.whose if shot.view == "pov" else ()
+    others = pillars_of(shot, story, filming, {subject.name, *subject.heads, *owner})
     return Takes(
         track,
         sizes,

@@ -17,11 +17,12 @@ from ..cinema.subject import Subject, group, person, place, thing
 from ..lang.ir import Shot, Target
 from ..library import Catalog
 from .focusing import Foci, Held
-from .types import STILL, StoryProposal
+from .types import STILL, Performance, StoryProposal
 
 Array = NDArray[np.float64]
 
 _MARGIN = 0.22  # radius of a person in somebody else's way, metres
+_SKULL, _HAT = 0.14, 0.04  # of a head with its hair, and how much a hat or high hair may add
 _STANDS = 1.65  # metres: what a spot in a room is as tall as
 _NECK = 0.09  # of one over whose shoulder one looks
 
@@ -176,7 +177,7 @@ def _held(
 ) -> Held:
     person = name in story.performances
     item = find_object(filming.world, target) if target is not None and not person else None
-    others = pillars_of(shot, story, {name} if person else set())
+    others = pillars_of(shot, story, filming, {name} if person else set())
     return Held(points, person, others, item.id if item is not None else None)
 
 
@@ -197,15 +198,28 @@ def _point(target: Target, story: StoryProposal, filming: Filming) -> Array:
     return np.asarray((moved.astype(float) @ own)[:, :3])
 
 
-def pillars_of(shot: Shot, story: StoryProposal, without: set[str]) -> list[tuple[Array, Array, float]]:
-    """Everybody else as pillars that hide what is behind them: foot and crown [T, 3], and radius."""
+def pillars_of(
+    shot: Shot, story: StoryProposal, filming: Filming, without: set[str]
+) -> list[tuple[Array, Array, float]]:
+    """Everybody else as pillars that hide what is behind them, each up to the shoulders and up to the top of
+    hat or hair: foot and crown [T, 3], and radius."""
     out = []
     for name, acted in story.performances.items():
-        if name not in without:
-            joints = acted.world_from_joint
-            crown = joints[:, JOINT["head"], :3, 3].astype(float) + np.array((0.0, 0.0, 0.12))
-            foot = joints[:, JOINT["hips"], :3, 3].astype(float)
-            foot[:, 2] = acted.position[:, 2]
-            shoulder = shot.view == "ots" and name in shot.whose
-            out.append((foot, crown, _NECK if shoulder else _MARGIN))
+        if name in without:
+            continue
+        skeleton = filming.skeletons[name]
+        marks = person(name, skeleton, acted.world_from_joint, acted.position, acted.heading).landmarks
+        hips = acted.world_from_joint[:, JOINT["hips"], :3, 3].astype(float)
+        if shot.view == "ots" and name in shot.whose:
+            out.append((_on_floor(hips, acted), marks["crown"], _NECK))
+            continue
+        shoulders = np.column_stack([hips[:, :2], marks["collar"][:, 2]])
+        out.append((_on_floor(hips, acted), shoulders, _MARGIN))
+        radius = _SKULL + min(skeleton.above, _HAT)
+        out.append((_on_floor(marks["crown"], acted), marks["top"], radius))
     return out
+
+
+def _on_floor(points: Array, acted: Performance) -> Array:
+    """What is below points [T, 3] of somebody, at the height they stand at."""
+    return np.column_stack([points[:, :2], acted.position[:, 2]])

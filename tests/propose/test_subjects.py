@@ -1,0 +1,39 @@
+"""Who is in the way: as high as a hat, as broad as a head where the head is."""
+
+from __future__ import annotations
+
+import numpy as np
+from filmset import shot, standing, story, world
+
+from runtime.body.proportions import make_skeleton
+from runtime.body.spec import BodySpec
+from vdsl.cinema.sight import clear_of_people
+from vdsl.propose.subjects import Filming, pillars_of
+
+TALL = 1.7
+
+
+def seen_past(hat: str, over: float, aside: float = 0.0, view: str = "") -> bool:
+    """Whether somebody in the way leaves a line free that passes so far over their crown, or beside."""
+    body = make_skeleton(BodySpec(height=TALL, hat=hat))
+    acted = story({"ben": standing(body, np.zeros((4, 3)), np.zeros(4))})
+    filming = Filming(world(), {"ben": body}, 24.0, 0)
+    pillars = pillars_of(shot(view=view, whose=("ben",) if view else ()), acted, filming, set())
+    level = TALL + over
+    camera, point = np.array((-3.0, aside, level)), np.array((3.0, aside, level))
+    clear = clear_of_people(np.tile(camera, (1, 4, 1)), np.tile(point, (4, 1, 1)), pillars)
+    return bool(clear.all())
+
+
+def test_hats_are_in_the_way() -> None:
+    assert not seen_past("none", -0.05)
+    assert seen_past("none", 0.05)
+    assert not seen_past("knight-helmet", 0.05)
+    assert seen_past("knight-helmet", 0.12)
+
+
+def test_there_is_a_view_beside_a_head_over_the_shoulder() -> None:
+    assert not seen_past("none", -0.1, 0.1)
+    assert seen_past("none", -0.1, 0.16)
+    assert not seen_past("none", -0.5, 0.16)  # the shoulders are broader
+    assert seen_past("none", -0.1, 0.1, view="ots")  # that one is meant to be in the picture

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -97,64 +97,114 @@ def _shoot_one(
     if rig == "cinema":
         relative = relative + (2 * sample.jitter[i] - 1) * np.radians(ASIDE)
     phi = subject.heading[at] + relative
-    lead = sample.lead[i] * LEAD
     if rig == "paper":
-        path = subject.position + np.array((0.0, 0.0, rig_paper.reference_height(scale, subject.height)))
-        r = rig_paper.radius(scale, subject.height, focal)
-        theta = np.array([rig_paper.theta(a) for a in angles])
-        offset, lifted, rise = np.zeros((len(i), 3)), np.zeros(len(i)), np.zeros(len(i))
-        height = np.full(len(i), rig_paper.reference_height(scale, subject.height))
+        f = _framed_as_printed(subject, scale, angles, phi, focal)
     else:
-        size = size_of(subject.kind, scale)
-        path = anchor(subject, size.upper, size.lower, fps)
         asked = np.array([CINEMA_THETA[a] for a in angles])
-        levels = _levels(subject, angles, at)
-
-        def framed(
-            phi: Array, focal: Array, column: Array | None = None, down: Array | float = 0.0
-        ) -> rig_cinema.Framing:
-            polar = asked - np.where(asked == np.pi / 2, down, 0.0)
-            return rig_cinema.frame(
-                subject, size, path, at, polar, phi, focal, film, lead, shot.roll, levels, column
-            )
-
-        if shot.view == "pov" and subject.via is not None:
-            framing, phi, focal = through_eyes(subject, size, path, at, shot.lens, film)
-        elif shot.view == "ots" and subject.via is not None:
-            framing, phi, focal = over_shoulder(
-                subject, size, path, at, shot.lens, film, on, sample.travel[i], framed
-            )
-        else:
-            side = columns(words, subject, asked, focal, film, on, sample.turn[i]) if keeps else None
-            framing = framed(phi, focal, side)
-        r, theta, offset, lifted = framing.r * sample.reach[i], framing.theta, framing.offset, framing.lifted
-        rise = _rise(subject, size, at, r * film[1] / focal, theta)
-        height = np.zeros(len(i))
+        side = columns(words, subject, asked, focal, film, on, sample.turn[i]) if keeps else None
+        f = _framed(shot, subject, sample, i, scale, angles, at, on, asked, phi, focal, film, side, fps)
         for word, factor in zip(words, (mu, mu_too), strict=False):
             if family(word) in ("push", "pull"):
-                r = np.where(key == 1, r / factor, r)
-    travel, before, key = _travel(subject, words[0], sample, i, r, focal, film, phi, key)
+                f = replace(f, r=np.where(key == 1, f.r / factor, f.r))
+    travel, before, key = _travel(subject, words[0], sample, i, f, film, key)
     turn, kept = _turn(kind, sample.turn[i]), np.zeros(len(i), bool)
-    draw = Draw(r, theta, phi, focal, offset, sample.lam[i], mu, turn, travel, before, key, on, kept, rise)
-    travel, before, _ = _travel(subject, words[-1], sample, i, r, focal, film, phi, key)
+    draw = Draw(
+        f.r, f.theta, f.phi, f.focal, f.offset, sample.lam[i], mu, turn, travel, before, key, on, kept, f.rise
+    )
+    travel, before, _ = _travel(subject, words[-1], sample, i, f, film, key)
     turn = _turn(family(words[-1]), 1.0 - sample.turn[i])
     second = replace(draw, lam=sample.lam_too[i], mu=mu_too, turn=turn, travel=travel, before=before)
     if keeps:
-        draw = keep(draw, words[0], words, subject, path, asked, film, sample.turn[i])
+        draw = keep(draw, words[0], words, subject, f.path, asked, film, sample.turn[i])
         if len(words) > 1:
-            second = keep(second, words[-1], words, subject, path, asked, film, 1.0 - sample.turn[i])
+            second = keep(second, words[-1], words, subject, f.path, asked, film, 1.0 - sample.turn[i])
     if shot.view == "pov" and subject.via is not None:
-        track = eyes_track(subject, path, draw, film, shot.roll, kind == "follow", fps)
+        track = eyes_track(subject, f.path, draw, film, shot.roll, kind == "follow", fps)
     elif len(words) > 1 or kind in FURTHER:
         parts = [Part(words[0], draw), Part(words[-1], second)][: len(words)]
-        track = combined(parts, path, film, shot.roll, fps, sample.noise[i])
+        track = combined(parts, f.path, film, shot.roll, fps, sample.noise[i])
     else:
-        track = track_of(words[0], path, draw, film, shot.roll)
+        track = track_of(words[0], f.path, draw, film, shot.roll)
     n = len(i)
     return Shooting(
         rig, track, local, (movement,) * n, (scale,) * n, angles, np.where(key == 1, last, 0), draw, second,
-        lifted, relative, height,
+        f.lifted, relative, f.height,
     )  # fmt: skip
+
+
+@dataclass(frozen=True, eq=False)
+class _Framed:
+    """Where cameras stand that have their subject framed.
+
+    path: [T, 3], what they hold on to; r, theta, phi, focal, lifted, rise [P]; offset [P, 3]: as in Draw and
+    Shooting; height: [P] metres of the paper's reference over the floor, 0 for ``rig cinema``
+    """
+
+    path: Array
+    r: Array
+    theta: Array
+    phi: Array
+    focal: Array
+    offset: Array
+    lifted: Array
+    rise: Array
+    height: Array
+
+
+def _framed_as_printed(
+    subject: Subject, scale: str, angles: tuple[str, ...], phi: Array, focal: Array
+) -> _Framed:
+    """``rig paper``."""
+    height, none = rig_paper.reference_height(scale, subject.height), np.zeros(len(phi))
+    path = subject.position + np.array((0.0, 0.0, height))
+    r, theta = rig_paper.radius(scale, subject.height, focal), np.array([rig_paper.theta(a) for a in angles])
+    offset = np.zeros((len(phi), 3))
+    return _Framed(path, r, theta, phi, focal, offset, none, none, np.full(len(phi), height))
+
+
+def _framed(
+    shot: Shot,
+    subject: Subject,
+    sample: Sample,
+    i: NDArray[np.int64],
+    scale: str,
+    angles: tuple[str, ...],
+    at: NDArray[np.int64],
+    on: NDArray[np.bool_],
+    asked: Array,
+    phi: Array,
+    focal: Array,
+    film: tuple[float, float],
+    side: Array | None,
+    fps: float,
+) -> _Framed:
+    """``rig cinema``: the size solved at the frames ``at`` for θ as ``asked``, or as eyes and shoulders ask.
+
+    side: [P] columns of the picture subjects are put on, NaN where that is free
+    """
+    size = size_of(subject.kind, scale)
+    path = anchor(subject, size.upper, size.lower, fps)
+    levels, lead = _levels(subject, angles, at), sample.lead[i] * LEAD
+
+    def framed(
+        phi: Array, focal: Array, column: Array | None = None, down: Array | float = 0.0
+    ) -> rig_cinema.Framing:
+        polar = asked - np.where(asked == np.pi / 2, down, 0.0)
+        return rig_cinema.frame(
+            subject, size, path, at, polar, phi, focal, film, lead, shot.roll, levels, column
+        )
+
+    if shot.view == "pov" and subject.via is not None:
+        found, phi, focal = through_eyes(subject, size, path, at, shot.lens, film)
+    elif shot.view == "ots" and subject.via is not None:
+        found, phi, focal = over_shoulder(
+            subject, size, path, at, shot.lens, film, on, sample.travel[i], framed
+        )
+    else:
+        found = framed(phi, focal, side)
+    r = found.r * sample.reach[i]
+    rise = _rise(subject, size, at, r * film[1] / focal, found.theta)
+    return _Framed(path, r, found.theta, phi, focal, found.offset, found.lifted, rise, np.zeros(len(phi)))
 
 
 def asked_high(shot: Shot, sample: Sample, i: NDArray[np.int64]) -> NDArray[np.int64]:
@@ -246,25 +296,23 @@ def _travel(
     movement: str,
     sample: Sample,
     i: NDArray[np.int64],
-    r: Array,
-    focal: Array,
+    framed: _Framed,
     film: tuple[float, float],
-    phi: Array,
     key: NDArray[np.int64],
 ) -> tuple[Array, Array, NDArray[np.int64]]:
     """Length, share before the framing, and key of dollies and pedestals: along with one who walks that
     way, else a part of what the picture shows."""
     u, before = sample.travel[i], sample.before[i]
-    kind = family(movement)
+    kind, view = family(movement), framed.r / framed.focal
     if kind == "dolly":
-        along = SIGN[movement] * basis(np.full_like(phi, np.pi / 2), phi)[0]
+        along = SIGN[movement] * basis(np.full_like(framed.phi, np.pi / 2), framed.phi)[0]
         walked = ((subject.position[-1] - subject.position[0]) * along).sum(-1)
         with_it = walked > 0.5
-        travel = np.clip(_between("dolly", u) * r * film[0] / focal, 0.3, 3.0)
+        travel = np.clip(_between("dolly", u) * view * film[0], 0.3, 3.0)
         travel = np.where(with_it, walked * (0.85 + 0.2 * u), travel)
         return travel, np.where(with_it, np.where(key == 1, 1.0, 0.0), before), key
     if kind == "pedestal":
-        return np.clip(_between("pedestal", u) * r * film[1] / focal, 0.2, 2.0), before, key
+        return np.clip(_between("pedestal", u) * view * film[1], 0.2, 2.0), before, key
     return np.zeros_like(u), before, key
 
 

@@ -164,4 +164,4 @@ def test_an_empty_scene_is_shown_as_a_place() -> None:
     assert grid.cameras
     for c in grid.cameras:
         turned = np.degrees(c.track.rotation[-1, 2] - c.track.rotation[0, 2])
-        assert 30.0 - 1e-6 <= turned <= 60.0 + 1e-6
+        assert 12.0 - 1e-6 <= turned <= 60.0 + 1e-6

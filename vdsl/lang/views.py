@@ -22,6 +22,8 @@ _SCALES = {
     "group": ("medium", "cowboy", "medium-long", "full", "wide"),
 }
 _MOVEMENTS = {"ots": ("static", "push"), "pov": ("follow",), "two-shot": ir.MOVEMENTS, "group": ir.MOVEMENTS}
+#: Angles over a shoulder where the line says none: level, unless one of the two sits and the other stands.
+_SHOULDER_ANGLES = ("eye-level", "low-angle", "high-angle")
 #: Movements there are through somebody's eyes.
 EYES = ("static", "follow")
 
@@ -49,7 +51,7 @@ def read_view(
     movements = said.movements if "movement" in said.said else _MOVEMENTS[said.view]
     words = replace(said, scales=scales, movements=movements)
     if said.view == "ots" and "angle" not in said.said:
-        words = replace(words, angles=("eye-level",))
+        words = replace(words, angles=_SHOULDER_ANGLES)
     if said.whose is not None and said.whose.text not in context.cast:
         unknown_character(said.whose, context.cast, report)
         return View(words)

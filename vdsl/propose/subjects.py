@@ -23,6 +23,8 @@ Array = NDArray[np.float64]
 
 _MARGIN = 0.22  # radius of a person in somebody else's way, metres
 _SKULL, _HAT = 0.14, 0.04  # of a head with its hair, and how much a hat or high hair may add
+_BESIDE, _TALLER = 1.0, 0.25  # metres to somebody whose head is to be in the picture too, and over it
+_SOMETIME = 0.2  # share of the time they are that near
 _STANDS = 1.65  # metres: what a spot in a room is as tall as
 _NECK = 0.09  # of one over whose shoulder one looks
 
@@ -56,6 +58,8 @@ def subject_of(shot: Shot, story: StoryProposal, filming: Filming) -> Subject:
         everybody = _together(shot, story, filming)
         return everybody if everybody is not None else _focused(shot, story, filming)
     subject = _focused(shot, story, filming)
+    if not shot.view and subject.kind == "person":
+        return _with_room(subject, story, filming)
     owner = shot.whose[0] if shot.view and shot.whose else ""
     if owner not in story.performances or owner == subject.name:
         return subject
@@ -66,6 +70,21 @@ def subject_of(shot: Shot, story: StoryProposal, filming: Filming) -> Subject:
 def _person(name: str, story: StoryProposal, filming: Filming) -> Subject:
     acted = story.performances[name]
     return person(name, filming.skeletons[name], acted.world_from_joint, acted.position, acted.heading)
+
+
+def _with_room(subject: Subject, story: StoryProposal, filming: Filming) -> Subject:
+    """The same, whose top is that of somebody a little taller who comes as near as to hug: neither head is to
+    be cut."""
+    own, rise = subject.landmarks, 0.0
+    for name in story.performances:
+        if name != subject.name:
+            top = _person(name, story, filming).landmarks["top"]
+            apart = top - own["top"]
+            near = np.linalg.norm(apart[:, :2], axis=1) < _BESIDE
+            if near.mean() >= _SOMETIME:
+                over = float(np.quantile(apart[near, 2], 0.9))
+                rise = max(rise, over if over <= _TALLER else 0.0)
+    return replace(subject, landmarks=own | {"top": own["top"] + (0.0, 0.0, rise)}) if rise else subject
 
 
 def _together(shot: Shot, story: StoryProposal, filming: Filming) -> Subject | None:

@@ -130,7 +130,7 @@ def _passing(
     most = 2 * np.arctan(off * half) if _stands(words) else np.arctan(off / _OFF * _OFF_ON_THE_WAY * half)
     turn, kept = _spread(words, most, u)
     flat = np.abs(theta - np.pi / 2) < _LEVEL
-    return turn, kept & flat & (subject.kind != "place") & (subject.travel() <= _STAYS)
+    return turn, kept & flat & (subject.travel() <= _STAYS)
 
 
 def _camera(draw: Draw, path: Array) -> tuple[Array, Array]:

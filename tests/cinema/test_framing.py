@@ -208,3 +208,13 @@ def test_a_follow_keeps_its_distance() -> None:
     for c in cameras:
         reach = np.linalg.norm(c.track.position - c.track.look_at, axis=1)
         np.testing.assert_allclose(reach, reach[0], atol=1e-6)
+
+
+@pytest.mark.parametrize("angle", ["eye-level", "overhead"])
+def test_headroom_is_asked_of_the_upright_and_the_middle_of_others(angle: str) -> None:
+    for c in filmed(still_story(skeleton()), 1.7, movement="static", scale="medium", angle=angle):
+        assert c.measures["headroom_error"] < 0.05
+        assert c.measures["thirds_error"] < 0.2
+    # as much too low as it is off the middle
+    far = filmed(walking_story(skeleton(), metres=1.5), 1.7, movement="static", scale="wide", angle=angle)
+    assert max(c.measures["headroom_error"] for c in far) > 0.02

@@ -15,6 +15,7 @@ from .takes import Bools, Picture, Takes, key_sample, mean_of, within
 from .vectors import length
 
 _NEARLY = 0.9  # share of a head in the frame that is as good as all of it
+_UPRIGHT = 0.65  # share of what the size asks for that one who is seen upright fills at least
 _BROAD = 0.27  # half of somebody's breadth with the arms and a little air, metres
 
 
@@ -42,16 +43,22 @@ def framing(
         error = np.abs(np.log(view[rows, key] / asked))
     crown, sole = xy[rows, :, upper, 1], xy[rows, :, lower, 1]
     whole = np.array([s.lower == "feet" for s in takes.sizes])
+    share = np.array([s.share for s in takes.sizes])
+    # seen from straight above, or lying: there is no line to be on, and the middle is where it belongs
+    flat = ((sole - crown)[rows, key] < _UPRIGHT * share) & (not takes.paper) & (subject.kind == "person")
+    over = np.where(flat[:, None], np.abs((crown + sole) / 2 - 0.5), np.abs(crown - top[:, None]))
+    beside = np.abs(eyes[..., 1] - 1 / 3)
+    beside = np.where(flat[:, None], np.maximum(np.abs(eyes[..., 1] - 0.5) - 1 / 6, 0.0), beside)
     return {
         "in_frame": mean_of(both, window),
         "size_error": error,
         "size_drift": np.where(window, drift, 0.0).max(axis=1),
         "headroom": np.clip(mean_of(crown, window), -1.0, 2.0),
-        "headroom_error": np.minimum(mean_of(np.abs(crown - top[:, None]), window), 2.0),
+        "headroom_error": np.minimum(mean_of(over, window), 2.0),
         "head_cut": _beyond(-crown, window),
         "head_cropped": broken(takes, subject, picture),
         "feet_cut": np.where(whole, _beyond(sole - 1.0, window), 0.0),
-        "thirds_error": np.minimum(mean_of(np.abs(eyes[..., 1] - 1 / 3), window), 2.0),
+        "thirds_error": np.minimum(mean_of(beside, window), 2.0),
         "lead_room": _lead(takes, subject, at, eyes[..., 0]),
     }, inside
 

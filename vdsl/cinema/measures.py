@@ -42,7 +42,7 @@ MEASURES = (
     "feet_cut",  # the same below the frame, for sizes that are to show the whole; 0 for the others
     "view",  # share of the window in which everybody a two-shot is of, or the shoulder it is over, is seen so
     "lead_room",  # more room ahead of the face than behind: −1..1, 0 where it looks at the camera
-    "thirds_error",  # distance of the eyes from the upper third, share of the frame's height
+    "thirds_error",  # distance of the eyes from the upper third (from above: the middle one), of its height
     "interest",  # share of the other points that matter (thing in hand, partner) in the frame and not hidden
     "empty",  # share of the time in which neither any of the subject nor any of those points is in the frame
     "walk_missed",  # share of the way the subject goes on which nothing of it is seen; 0 for a step or two

@@ -26,6 +26,7 @@ from ..lang.ir import Shot, StoryLine
 from ..library import Catalog
 from ..stage.actions import build_clip
 from .advice import advise
+from .arriving import arrival, shows_arrival
 from .beholding import beholding
 from .cameras import Filming, propose_cameras
 from .drawing import generator
@@ -57,20 +58,23 @@ def tell(
 ) -> Told:
     """Perform a line in up to ``most`` ways.
 
-    shot: whose duration, speed and speech count (the first of the line's if None)
+    shot: whose duration, speed and speech count (the first of the line's if None), and whose camera says from
+        where on the line is shown
     What cannot be done is reported and left out: the person idles instead.
     """
     report = report if report is not None else Report()
+    cuts = shot is not None and shows_arrival(shot)
     shot = shot if shot is not None else (line.shots[0] if line.shots else None)
     state = beholding(state, line)
     errands = _errands(state, line, filming, shot, report)
-    proposals, end = [], state
+    cuts, proposals, end = cuts and _comes_first(line, errands, filming), [], state
     for index, (name, path, motion) in enumerate(_motions(state, errands, filming, shot, most)):
         if index == 0:
             opened = {k: p.open for k, p in motion.end_props.items() if p.hinge is not None}
             world = state.world.opened(opened)
             end = replace(state, world=world, actors=motion.end_actors, props=motion.end_props)
-        proposals.append(_proposal(index, name, path, motion, _interest(errands, motion, state.world)))
+        begin = arrival(motion.position[next(iter(errands))], filming.fps) if cuts else 0
+        proposals.append(_proposal(index, name, path, motion, _interest(errands, motion, state.world), begin))
     return Told(tuple(proposals), end)
 
 
@@ -165,6 +169,17 @@ def _errands(
     return out
 
 
+def _comes_first(line: StoryLine, errands: Mapping[str, Errand], filming: Filming) -> bool:
+    """Whether one person acts, alone, and it is neither to go somewhere nor done on the way."""
+    if len(errands) != 1 or filming.catalog is None:
+        return False
+    name, item = next(iter(errands.items()))
+    action = next(beat.action for beat in line.beats if beat.character == name)
+    definition = filming.catalog.get("action", action)
+    going = isinstance(definition, ActionDef) and definition.group == "going"
+    return not going and not item.task.clip.lead
+
+
 def _ways(errands: Mapping[str, Errand], most: int) -> list[tuple[int, int]]:
     """(variant, path) pairs of whoever acts first: each way and variant once, then the other pairs."""
     if not errands:
@@ -233,10 +248,19 @@ def _interest(
 
 
 def _proposal(
-    index: int, variant: str, path: int, motion: SceneMotion, interest: tuple[NDArray[np.float64], ...]
+    index: int,
+    variant: str,
+    path: int,
+    motion: SceneMotion,
+    interest: tuple[NDArray[np.float64], ...],
+    begin: int,
 ) -> StoryProposal:
+    """What is shown of a motion: from the frame ``begin`` on."""
+    joints, position, heading = motion.world_from_joint, motion.position, motion.heading
     performances = {
-        name: Performance(motion.world_from_joint[name], motion.position[name], motion.heading[name])
-        for name in motion.world_from_joint
+        name: Performance(joints[name][begin:], position[name][begin:], heading[name][begin:])
+        for name in joints
     }
-    return StoryProposal(index, variant, path, motion.frames, performances, motion.props, interest)
+    props = {number: moved[begin:] for number, moved in motion.props.items()} if begin else motion.props
+    points = tuple(path[begin:] for path in interest)
+    return StoryProposal(index, variant, path, motion.frames - begin, performances, props, points)

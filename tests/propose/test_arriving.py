@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -44,9 +46,9 @@ def test_steps_walks_that_are_the_action_and_those_who_stay_are_shown_whole(
     assert arrival(way(metres, walk, rest), FPS) == 0
 
 
-def told(line: str) -> Told:
+def told(line: str, rig: str = "cinema") -> Told:
     act = stage_script(PLACE + line + "\n", "t")
-    return tell(act.state, act.line, act.filming, shot=act.line.shots[0])
+    return tell(act.state, act.line, replace(act.filming, rig=rig), shot=act.line.shots[0])
 
 
 def test_a_camera_that_waits_cuts_to_the_arrival() -> None:
@@ -75,6 +77,11 @@ def test_a_camera_that_waits_cuts_to_the_arrival() -> None:
 def test_where_the_way_is_seen_or_others_act_all_is_shown(line: str) -> None:
     shown, whole = told(line).proposals, told(line.split("/")[0] + "/ (static full)").proposals
     assert [story.frames for story in shown] == [story.frames for story in whole]
+
+
+def test_the_papers_rig_shows_all_of_a_path() -> None:
+    whole, shown = (told(f"(anna pick up cup) / (static {size})", "paper") for size in ("full", "medium"))
+    assert [story.frames for story in shown.proposals] == [story.frames for story in whole.proposals]
 
 
 def test_a_line_that_says_how_long_it_lasts_does() -> None:

@@ -63,7 +63,7 @@ def tell(
     What cannot be done is reported and left out: the person idles instead.
     """
     report = report if report is not None else Report()
-    cuts = shot is not None and shows_arrival(shot)
+    cuts = shot is not None and filming.rig != "paper" and shows_arrival(shot)
     shot = shot if shot is not None else (line.shots[0] if line.shots else None)
     state = beholding(state, line)
     errands = _errands(state, line, filming, shot, report)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from filmset import shot, skeleton, still_story, walking_story, world
@@ -29,6 +31,8 @@ PAIRS = (
     "push+pedestal-up",
     "roll-left+push",
     "dolly-left+tilt-down",
+    "push+tilt-up",
+    "pull+tilt-down",
 )
 
 
@@ -126,3 +130,17 @@ def test_two_at_once_do_both() -> None:
     acted = still_story(BODY)
     for c in filmed(acted, "push+pan-left"):
         assert read_movement(c.track, subject(acted))[0] == canonical("push+pan-left") == "pan-left+push"  # type: ignore[arg-type]
+
+
+def test_coming_nearer_while_looking_up_a_body_is_no_rise_unless_it_rises() -> None:
+    acted = still_story(BODY)
+    found = set()
+    for c in filmed(acted, "push+tilt-up"):
+        assert read_movement(c.track, subject(acted))[0] == "push+tilt-up"  # type: ignore[arg-type]
+        climb = np.linspace(0.0, 1.2, len(c.track.position))[:, None] * [0.0, 0.0, 1.0]
+        found.add(
+            read_movement(replace(c.track, position=c.track.position + climb - [0, 0, 1.2]), subject(acted))[
+                0
+            ]
+        )  # type: ignore[arg-type]
+    assert all("pedestal-up" in words for words in found)

@@ -331,7 +331,8 @@ def _moves(seen: _Seen, pivot: Array) -> set[str]:
         yaw = seen.rotation[seen.best, 2]
         aside = float(moved[0] * np.sin(yaw) - moved[1] * np.cos(yaw))
         ahead = float(moved[0] * np.cos(yaw) + moved[1] * np.sin(yaw))
-        up = float(moved[2]) + ahead * np.tan(low)  # that which is more than coming nearer needs
+        needs = -ahead * np.tan(-pitch if abs(_change(pitch)) > _TURN else np.array([low]))  # of any it sees
+        up = float(moved[2] - np.clip(moved[2], needs.min(), needs.max()))  # more than coming nearer needs
         slid = (-float(moved[2]) if seen.overhead else ahead / np.cos(low)) / away
         if abs(aside) > max(_ASIDE * away, _ASKEW * abs(ahead)):
             out.add(_way("dolly", aside, "right", "left"))

@@ -29,3 +29,7 @@ MATERIALS = (
     "parquet",
     "plate",  # sheets of metal with seams
 )
+
+#: The number of glass before which it is night: dark whatever lies behind it, and kept as dark as it is said
+#: to be. Nothing is made of it by word.
+NIGHT_GLASS = len(MATERIALS)

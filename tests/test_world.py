@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from scipy import ndimage
 
-from runtime.mesh import MATERIALS
+from runtime.materials import MATERIALS, NIGHT_GLASS
 from runtime.shapes import volume
 from runtime.world import World
 from vdsl.lang.definitions.prop import PropDef
@@ -371,6 +371,9 @@ def test_windows_are_dark_at_night() -> None:
     changed = (day.mesh.colors != night.mesh.colors).any(1)
     assert changed.any()
     assert night.mesh.colors[changed].mean() < 0.6 * day.mesh.colors[changed].mean()
+    panes = night.mesh.colors[night.mesh.materials == NIGHT_GLASS]
+    assert len(panes)
+    assert (panes[:, 2] > 1.3 * panes[:, 0]).all(), "and blue before the light of lamps"
 
 
 def test_houses_are_lit_at_night_and_shelters_are_not() -> None:

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 
+from ..materials import NIGHT_GLASS
 from ..mesh import MATERIALS, Mesh
 from .bake import Volume, density_volume, key_casters, stage_bounds
 from .detail import COUNT, Levels, with_levels
@@ -86,7 +87,7 @@ def check(scene: RenderScene) -> None:
             raise ValueError(f"RenderScene.{name}: normals and colours must be finite")
         if len(ids) != len(mesh.faces):
             raise ValueError(f"RenderScene.{name}_object: {len(ids)} ids for {len(mesh.faces)} faces")
-        if len(mesh.materials) and not (mesh.materials.min() >= 0 and mesh.materials.max() < len(MATERIALS)):
+        if len(mesh.materials) and not (mesh.materials.min() >= 0 and mesh.materials.max() <= NIGHT_GLASS):
             raise ValueError(f"RenderScene.{name}: a material is not in MATERIALS")
     if len(scene.static_wall) != len(scene.static.faces):
         raise ValueError("RenderScene.static_wall: expected one number for each static face")
@@ -210,7 +211,7 @@ def prepare(scene: RenderScene, style: Style) -> Prepared:
 
     object_ids = np.concatenate([scene.static_object[order], scene.skinned_object[moving_order]])
     # panes of glass and lamps are not divided by lines
-    panes = [MATERIALS.index("glass"), MATERIALS.index("glow")]
+    panes = [MATERIALS.index("glass"), MATERIALS.index("glow"), NIGHT_GLASS]
     clear = np.isin(static.materials, panes)
     clear_part = np.isin(skinned.materials, panes) & (fitting > LOOSE)
     parts = np.concatenate([np.where(clear, -1, static.parts), np.where(clear_part, -1, skinned.parts)])

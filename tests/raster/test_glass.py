@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from raster_scenes import box, from_lists, looking, scene, sphere, still
 
+from runtime.materials import NIGHT_GLASS
 from runtime.mesh import MATERIALS, Mesh
 from runtime.raster.panes import OPEN, divided
 from runtime.raster.renderer import Renderer
@@ -131,3 +132,16 @@ def test_both_ways_of_filling_give_the_same_glass() -> None:
     one, other = draw(s, style=Style()), draw(s, serial=False, style=Style())
     assert (one.color == other.color).all()
     assert (one.ids == other.ids).all()
+
+
+def test_a_pane_before_the_night_keeps_its_colour() -> None:
+    """A set's colours are drawn quiet; dark glass would become grey, and no more look like a night."""
+    night = (0.25, 0.32, 0.47)
+    dark = wall(1.5, night)
+    drawn: list[np.ndarray] = []
+    for material in (MATERIALS.index("plain"), NIGHT_GLASS):
+        made = replace(dark, materials=np.full_like(dark.materials, material))
+        drawn.append(middle(draw(scene([made], []), style=replace(PLAIN, quiet=0.45))).astype(float))
+    plain, glass = drawn
+    assert glass[2] - glass[0] > 1.5 * (plain[2] - plain[0])
+    assert glass[2] < plain[2] - 5

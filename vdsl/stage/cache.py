@@ -42,7 +42,13 @@ _MESH = ("vertices", "faces", "normals", "colors", "parts", "materials")
 _SOLIDS = ("centre", "half", "yaw", "wall", "object")
 _HINGE = ("pivot", "axis", "handle", "closed", "boxes")
 #: What decides how a world is built.
-_CODE = ("runtime/world.py", "runtime/shapes.py", "runtime/mesh.py", "vdsl/lang/evaluate.py")
+_CODE = (
+    "runtime/world.py",
+    "runtime/shapes.py",
+    "runtime/mesh.py",
+    "runtime/materials.py",
+    "vdsl/lang/evaluate.py",
+)
 _CODE_FOLDERS = ("vdsl/stage", "vdsl/lang/definitions")
 Arrays = dict[str, NDArray[Any]]
 

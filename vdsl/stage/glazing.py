@@ -32,7 +32,7 @@ def glazed(
     )
     taken = np.float32(share) * np.clip(1.4 - 4.2 * stain, 0.25, 1)
     colors[glass] = (1 - taken) * own + taken * np.clip(np.asarray(tint, np.float32) * relative, 0, 1)
-    materials[glass] = MATERIALS.index(material)
+    materials[glass] = material
     if time == "night":
         homes = [o.id for o in objects if o.kind.endswith(INHABITED)]
         lit = glass & np.isin(owners, homes)

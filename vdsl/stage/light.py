@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 
+from runtime.materials import MATERIALS, NIGHT_GLASS
 from runtime.world import Light
 
 from ..lang.definitions.set import SetDef
@@ -57,8 +58,8 @@ _INDOORS = {
                  ((0.93, 0.93, 0.92), (0.93, 0.93, 0.92)), (0.90, 0.95, 0.97), 0.0, 0.0, 0.8),
     "dusk": _Hour(42, 200, (1.02, 0.73, 0.36), (0.74, 0.82, 0.97), (0.78, 0.75, 0.75),
                   ((0.90, 0.88, 0.88), (0.90, 0.88, 0.88)), (0.98, 0.80, 0.62), 0.7, 0.7, 0.8),
-    "night": _Hour(64, 215, (1.04, 0.78, 0.46), (0.46, 0.51, 0.64), (0.44, 0.43, 0.46),
-                   ((0.34, 0.36, 0.45), (0.34, 0.36, 0.45)), (0.18, 0.23, 0.38), 0.92, 1.0),
+    "night": _Hour(64, 215, (1.56, 1.14, 0.62), (0.52, 0.58, 0.74), (0.52, 0.50, 0.54),
+                   ((0.34, 0.36, 0.45), (0.34, 0.36, 0.45)), (0.25, 0.32, 0.47), 0.92, 1.0),
 }  # fmt: skip
 
 
@@ -68,7 +69,7 @@ _LAMPS = {
                    ((0.86, 0.86, 0.84), (0.86, 0.86, 0.84)), (0.90, 0.95, 0.97), 0.0, 0.4),
     "cool": _Hour(58, 235, (0.52, 0.64, 0.76), (0.80, 0.92, 1.04), (0.62, 0.70, 0.82),
                   ((0.20, 0.25, 0.36), (0.12, 0.16, 0.26)), (0.24, 0.30, 0.46), 0.0, 0.8),
-    "warm": _Hour(46, 250, (1.04, 0.75, 0.44), (0.79, 0.79, 0.84), (0.75, 0.68, 0.63),
+    "warm": _Hour(46, 250, (1.16, 0.84, 0.49), (0.86, 0.85, 0.89), (0.81, 0.73, 0.67),
                   ((0.42, 0.36, 0.34), (0.34, 0.30, 0.31)), (1.0, 0.90, 0.80), 0.4, 0.9),
     "dim": _Hour(62, 225, (0.58, 0.57, 0.54), (0.66, 0.69, 0.73), (0.54, 0.55, 0.57),
                  ((0.46, 0.48, 0.52), (0.40, 0.42, 0.47)), (0.80, 0.86, 0.90), 0.5, 0.9),
@@ -79,7 +80,7 @@ _LOWERED = 0.86
 _BACK, _BACK_OUTSIDE = (0.45, 0.26), (0.5, 0.28)
 #: Lamps enough to light a place by themselves, as ``shining`` counts them.
 _ENOUGH = 0.025
-_BOUNCE: Colour = (0.15, 0.10, 0.04)
+_BOUNCE: Colour = (0.16, 0.09, 0.02)
 
 #: A lit window seen from the street at night.
 LAMPLIGHT: Colour = (0.93, 0.80, 0.55)
@@ -161,11 +162,11 @@ def window_azimuth(definition: SetDef, room: tuple[str, ...]) -> float | None:
     return heading + math.radians(27) if min(off, 1 - off) < 0.15 else heading
 
 
-def glass_tint(time: str, outdoor: bool, light: str = "daylight") -> tuple[Colour, float, str]:
-    """The colour window panes take at a time of day, how much of it (0..1), and as what they are drawn:
-    at night glass is dark, save where somebody is at home behind it (:data:`LAMPLIGHT`). In a ship, whose
-    light is cool, there is no hour."""
+def glass_tint(time: str, outdoor: bool, light: str = "daylight") -> tuple[Colour, float, int]:
+    """The colour window panes take at a time of day, how much of it (0..1), and the number of the material
+    they are drawn as: at night glass is dark, save where somebody is at home behind it (:data:`LAMPLIGHT`);
+    in a ship, whose light is cool, there is no hour."""
     if light == "cool":
-        return (0.0, 0.0, 0.0), 0.0, "glass"
+        return (0.0, 0.0, 0.0), 0.0, MATERIALS.index("glass")
     hour = _hour(time, outdoor, "daylight")
-    return hour.glass, hour.glass_share, "plain" if time == "night" else "glass"
+    return hour.glass, hour.glass_share, NIGHT_GLASS if time == "night" else MATERIALS.index("glass")

@@ -108,16 +108,18 @@ def ended_at(
     Over edges it goes on to the next triangle, unless that one is turned away or there is none; ``far``
     triangles at most.
     """
-    p, q, r = corners(t, m, eye, vertices, position, faces, counts)
-    out, across, edge, facing = left_at(p, q, r, ray, step, beside)
-    at = t
-    for _ in range(far):
-        following = joined[at, edge]
+    out, across, edge, facing, at = 0.0, False, 0, 0.0, t
+    for k in range(far + 1):
+        following = t
+        if k > 0:
+            following = joined[at, edge]
         if following < 0 or out >= 1.0:
             break
         p, q, r = corners(following, m, eye, vertices, position, faces, counts)
         steps, over, side, turn = left_at(p, q, r, ray, step, beside)
-        if turn * facing <= 0:
+        if k == 0:
+            facing = turn
+        elif turn * facing <= 0:
             break
         out, across, edge, at = greater(out, steps), over, side, following
     return out, across
@@ -170,20 +172,22 @@ def passing(
     far = FAR if kind == OUTLINE else 0
     here, there = NEVER, NEVER
     here_across, there_across = False, False
-    # it is that of the nearer one, if it ends there at all
+    # it is that of the nearer one, if it ends there at all; asked for in one place, as it is much code
     first = nearness(vis, at) >= nearness(vis, to)
-    if t >= 0 and first:
-        here, here_across = ended_at(
-            t, far, m, eye, ray, step, beside, vertices, position, faces, joined, counts
-        )
-    if u >= 0 and (kind == BEND or here >= 1.0):
-        there, there_across = ended_at(
-            u, far, m, eye, ray + step, step * -1.0, beside, vertices, position, faces, joined, counts
-        )
-    if t >= 0 and not first and (kind == BEND or there >= 1.0):
-        here, here_across = ended_at(
-            t, far, m, eye, ray, step, beside, vertices, position, faces, joined, counts
-        )
+    for turn in range(2):
+        own = first if turn == 0 else not first
+        asked = t if own else u
+        if asked >= 0 and (turn == 0 or kind == BEND or ti.min(here, there) >= 1.0):
+            begin, way = ray, step
+            if not own:
+                begin, way = ray + step, step * -1.0
+            steps, across = ended_at(
+                asked, far, m, eye, begin, way, beside, vertices, position, faces, joined, counts
+            )
+            if own:
+                here, here_across = steps, across
+            else:
+                there, there_across = steps, across
     if kind == BEND and here < 1.0 and there < 1.0:
         if here_across or there_across:  # between them is what rounds the edge off
             out = 0.5 * (here - there)
@@ -285,55 +289,35 @@ def find_edges(
                     x, at = b * RUN + i, begin + i
                     code = 0
                     ray = first + step * ti.cast(x, ti.f32)
-                    if x < width - 1 and triangle(vis, at) != triangle(vis, at + 1):
-                        behind = at - 1 if x > 0 else at
-                        beyond = at + 2 if x < width - 2 else at + 1
-                        kind = border(behind, at, at + 1, beyond, edge, vis)
-                        if kind != 0:
-                            s = NEVER
-                            if told_apart(behind, at, at + 1, beyond, picture):
-                                s = passing(
-                                    at,
-                                    at + 1,
-                                    kind,
-                                    m,
-                                    eye,
-                                    ray,
-                                    step,
-                                    down,
-                                    vis,
-                                    vertices,
-                                    position,
-                                    faces,
-                                    joined,
-                                    counts,
-                                )
-                            code = coded(kind, s)
-                    if y < height - 1 and triangle(vis, at) != triangle(vis, at + width):
-                        below = at + width
-                        behind = at - width if y > 0 else at
-                        beyond = below + width if y < height - 2 else below
-                        kind = border(behind, at, below, beyond, edge, vis)
-                        if kind != 0:
-                            s = NEVER
-                            if told_apart(behind, at, below, beyond, picture):
-                                s = passing(
-                                    at,
-                                    below,
-                                    kind,
-                                    m,
-                                    eye,
-                                    ray,
-                                    down,
-                                    step,
-                                    vis,
-                                    vertices,
-                                    position,
-                                    faces,
-                                    joined,
-                                    counts,
-                                )
-                            code |= coded(kind, s) << 8
+                    for below in range(2):
+                        stride, before, after, along, aside = 1, x, width - 1 - x, step, down
+                        if below == 1:
+                            stride, before, after, along, aside = width, y, height - 1 - y, down, step
+                        to = at + stride
+                        if after > 0 and triangle(vis, at) != triangle(vis, to):
+                            behind = at - stride if before > 0 else at
+                            beyond = to + stride if after > 1 else to
+                            kind = border(behind, at, to, beyond, edge, vis)
+                            if kind != 0:
+                                s = NEVER
+                                if told_apart(behind, at, to, beyond, picture):
+                                    s = passing(
+                                        at,
+                                        to,
+                                        kind,
+                                        m,
+                                        eye,
+                                        ray,
+                                        along,
+                                        aside,
+                                        vis,
+                                        vertices,
+                                        position,
+                                        faces,
+                                        joined,
+                                        counts,
+                                    )
+                                code |= coded(kind, s) << (8 * below)
                     found[at] = code
 
 

@@ -51,6 +51,15 @@ class Levels:
     person: NDArray[np.int32]
     vertices: int
 
+    @property
+    def drawn(self) -> int:
+        """How many skinned faces a view has at most: of each body, those of its largest level."""
+        if not len(self.middle):
+            return len(self.body)
+        leveled = self.body >= 0
+        sizes = np.bincount(self.body[leveled] * COUNT + self.level[leveled], minlength=len(self.middle) * COUNT)
+        return int(sizes.reshape(-1, COUNT).max(axis=1).sum() + (~leveled).sum())
+
     def chosen(
         self,
         palettes: NDArray[np.float32],

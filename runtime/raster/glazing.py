@@ -35,6 +35,11 @@ class Sheets:
     clusters: NDArray[np.int32]
     moving_first: int
 
+    @property
+    def most_drawn(self) -> int:
+        """How many faces a view has at most."""
+        return len(self.faces)
+
 
 class Glazing:
     """Lays the clear glass of one scene over pictures; buffer: where kept arrays come from."""

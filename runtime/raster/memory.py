@@ -15,7 +15,7 @@ from .device import Backend
 from .loaded import Loaded
 from .moments import LARGE, SHADOW
 
-USUAL = 512 << 20  # bytes; more at a time draws no faster on a processor
+USUAL = 640 << 20  # bytes: twelve views of 720p of a furnished room; more draw no faster on a processor
 MOST = 4 << 30  # bytes, of a GPU with memory to spare
 HOST_SHARE, GPU_SHARE = 4, 2  # a quarter of what a machine has free, and half of what a GPU has
 
@@ -23,7 +23,7 @@ PIXEL = 20 + 3  # visibility, colour, normals and edges; the finished bytes
 RUN = 8 * 4  # of a run of pixels: solid, marks, level, what touched and copied it, and lines found in it
 PANE = 8  # of a pixel where there is clear glass
 VERTEX = 3 * 12  # place, normal and place in the light
-CORNERS = 100  # of a triangle, which may leave two on the screen, on the host
+CORNERS = 100  # of a triangle that is drawn, which may leave two on the screen, on the host
 CLUSTER = 16 + 4 * 9 * 16 * 4  # bounds, and corners as they are arranged for vectors
 TEXEL = 4 + 2 * 4 * 0.2  # of a shadow map, and its summaries while they are made
 CELL = 12  # of the floor, of furniture, and blurred
@@ -34,7 +34,7 @@ def bytes_of_view(content: Loaded, size: tuple[int, int], run: int, vertices: in
     width, height = size
     pixels = width * height * (PIXEL + (PANE if content.glass is not None else 0))
     runs = height * -(-width // run) * RUN
-    return pixels + runs + len(content.scene.faces) * CORNERS + bytes_of_moment(content, height, vertices)
+    return pixels + runs + content.scene.most_drawn * CORNERS + bytes_of_moment(content, height, vertices)
 
 
 def bytes_of_moment(content: Loaded, height: int, vertices: int) -> int:

@@ -76,6 +76,11 @@ class Prepared:
     detail: Levels
     head: NDArray[np.uint8]
 
+    @property
+    def most_drawn(self) -> int:
+        """How many faces a view has at most: of what has levels of detail, one of them."""
+        return self.static_faces + self.detail.drawn
+
 
 def check(scene: RenderScene) -> None:
     """Raise ValueError for a scene that cannot be drawn."""

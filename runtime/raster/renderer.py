@@ -99,6 +99,7 @@ class Renderer:
             check_roles(roles, count, int(content.scene.surface_object.max(initial=-1)) + 1)
             guides = np.empty((count, GUIDE_SIDE, GUIDE_SIDE, len(GUIDES)), np.uint8)
         chunk = self._chunk(content, hidden, (width, height))
+        chunk = -(-count // max(-(-count // chunk), 1))  # as few of them as fit, of one size
         several = len(np.unique(moment))
         # moments that many views share are moved once for all chunks, if there is room for all of them
         room = bytes_of_moment(content, height, skinned(content, hidden))

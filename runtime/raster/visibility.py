@@ -32,6 +32,8 @@ class Triangles(Protocol):
     def clusters(self) -> NDArray[np.int32]: ...
     @property
     def moving_first(self) -> int: ...
+    @property
+    def most_drawn(self) -> int: ...
 
 
 class Visibility:
@@ -144,7 +146,7 @@ class Visibility:
         """Fill from the clusters in ``part`` [N, 2]; empty: None for sets alone, else as in :meth:`fill`."""
         scene, a, kernels, views = self._scene, self._arrays, self._kernels, len(part)
         width, height = size
-        lanes, most = kernels.LANES, max(len(scene.faces), 1)  # a triangle leaves two at most
+        lanes, most = kernels.LANES, max(scene.most_drawn, 1)  # a triangle leaves two at most
         work = self._buffer("work", (views * (kernels.CORNERS + 1) * lanes,), np.float32)
         corner = self._buffer("corner", (views * 2 * most * kernels.CORNERS,), np.float32)
         tag = self._buffer("tag", (views * 2 * most * kernels.TAGS,), np.int32)

@@ -56,9 +56,9 @@ class Levels:
         """How many skinned faces a view has at most: of each body, those of its largest level."""
         if not len(self.middle):
             return len(self.body)
-        leveled = self.body >= 0
-        sizes = np.bincount(self.body[leveled] * COUNT + self.level[leveled], minlength=len(self.middle) * COUNT)
-        return int(sizes.reshape(-1, COUNT).max(axis=1).sum() + (~leveled).sum())
+        leveled, bodies = self.body >= 0, len(self.middle)
+        sizes = np.bincount(self.body[leveled] * COUNT + self.level[leveled], minlength=bodies * COUNT)
+        return int(sizes.reshape(bodies, COUNT).max(axis=1).sum() + (~leveled).sum())
 
     def chosen(
         self,

@@ -58,34 +58,33 @@ def corners(t, m, eye, vertices: ti.template(), position: ti.template(), faces: 
 
 
 @ti.func
-def crossed(a, b, facing, ray, step, beside):
-    """How many steps from a ray to the edge from ``a`` to ``b`` of a triangle, if they lead out of it there.
+def crossed(a, along, facing, ray, step):
+    """How many steps from a ray to the edge of a triangle that begins at ``a``, if they lead out of it there.
 
-    And whether the edge lies rather across these steps than those to the side. facing: determinant of the
-    triangle's corners. What is subtracted is small where it matters, for small triangles far away.
+    along: to where the edge ends; facing: determinant of the triangle's corners. What is subtracted is small
+    where it matters, for small triangles far away.
     """
-    along = b - a
-    change, aside = along.dot(step.cross(a)), along.dot(beside.cross(a))
+    change = along.dot(step.cross(a))
     steps = NEVER
     if change * facing < 0:
         steps = greater(-along.dot(ray.cross(a)) / change, 0.0)
-    return steps, ti.abs(change) >= ti.abs(aside)
+    return steps
 
 
 @ti.func
-def left_at(p, q, r, ray, step, beside):
-    """How many steps from a ray a triangle is left, whether across them as above, over which edge, and its
-    facing."""
+def left_at(p, q, r, ray, step):
+    """How many steps from a ray a triangle is left, over which edge, where that begins and what it leads
+    along, and the triangle's facing."""
     facing = p.dot(q.cross(r))
-    out, across = crossed(p, q, facing, ray, step, beside)
-    edge = 0
-    other, over = crossed(q, r, facing, ray, step, beside)
+    edge, begin, along = 0, p, q - p
+    out = crossed(p, along, facing, ray, step)
+    other = crossed(q, r - q, facing, ray, step)
     if other < out:
-        out, across, edge = other, over, 1
-    other, over = crossed(r, p, facing, ray, step, beside)
+        out, edge, begin, along = other, 1, q, r - q
+    other = crossed(r, p - r, facing, ray, step)
     if other < out:
-        out, across, edge = other, over, 2
-    return out, across, edge, facing
+        out, edge, begin, along = other, 2, r, p - r
+    return out, edge, begin, along, facing
 
 
 @ti.func
@@ -103,12 +102,14 @@ def ended_at(
     joined: ti.template(),
     counts,
 ):
-    """How many steps from a ray through triangle ``t`` its surface is left, as :func:`left_at`.
+    """How many steps from a ray through triangle ``t`` its surface is left, and whether the edge over which it
+    is lies rather across these steps than those to the side, ``beside``.
 
     Over edges it goes on to the next triangle, unless that one is turned away or there is none; ``far``
     triangles at most.
     """
-    out, across, edge, facing, at = 0.0, False, 0, 0.0, t
+    out, edge, facing, at = 0.0, 0, 0.0, t
+    begin, along = vec3(0), vec3(0)
     for k in range(far + 1):
         following = t
         if k > 0:
@@ -116,13 +117,13 @@ def ended_at(
         if following < 0 or out >= 1.0:
             break
         p, q, r = corners(following, m, eye, vertices, position, faces, counts)
-        steps, over, side, turn = left_at(p, q, r, ray, step, beside)
+        steps, side, start, way, turn = left_at(p, q, r, ray, step)
         if k == 0:
             facing = turn
         elif turn * facing <= 0:
             break
-        out, across, edge, at = greater(out, steps), over, side, following
-    return out, across
+        out, edge, at, begin, along = greater(out, steps), side, following, start, way
+    return out, ti.abs(along.dot(step.cross(begin))) >= ti.abs(along.dot(beside.cross(begin)))
 
 
 @ti.func

@@ -20,7 +20,7 @@ MOST = 4 << 30  # bytes, of a GPU with memory to spare
 HOST_SHARE, GPU_SHARE = 4, 2  # a quarter of what a machine has free, and half of what a GPU has
 
 PIXEL = 20 + 3  # visibility, colour, normals and edges; the finished bytes
-RUN = 8 * 4  # of a run of pixels: solid, marks, level, what touched and copied it, and lines found in it
+RUN = 10 * 4  # of a run of pixels: solid, marks, level, what touched and copied it, lines and ends in it
 PANE = 8  # of a pixel where there is clear glass
 VERTEX = 3 * 12  # place, normal and place in the light
 CORNERS = 100  # of a triangle that is drawn, which may leave two on the screen, on the host

@@ -250,13 +250,23 @@ class Passes:
         found = self._buffer("found", (3 * pixels // self.run,), np.int32)
         vis, edge = layer.vis[:pixels], layer.edge[:pixels]
         words, numbers = (vis.view(kind).reshape(-1, self.run) for kind in (np.int32, np.float32))
-        runs = (layer.solid, layer.level, first, self._style.outline, found, layer.marks)
+        told = (int(self._tells_kinds(size)), found, self._kinds(views, size), layer.marks)
+        runs = (layer.solid, layer.level, first, self._style.outline, *told)
         self._borders(
             vis, words, numbers, edge.view(np.int32).reshape(-1, self.run), *runs, *extent, *crew(lines)
         )
         if self._style.outline:
             named = (a["surface_object"], a["one_color"], first)
             self._ink.found(*seen, *named, *lookup, found, *kept, views, *size, *crew(lines))
+
+    def _tells_kinds(self, size: tuple[int, int]) -> bool:
+        """Whether lines and edges are found by the same look at borders."""
+        return self._borders is not None and self._style.outline and not size[0] % self.run and size[1] > FINE
+
+    def _kinds(self, views: int, size: tuple[int, int]) -> Any:
+        """What ends or bends beside each pixel, two words of a run, where that is told."""
+        runs = views * size[1] * (size[0] // self.run) if self._tells_kinds(size) else 1
+        return self._buffer("kinds", (2 * runs,), np.int32)
 
     def even_out(
         self,
@@ -274,7 +284,8 @@ class Passes:
         edges = self._buffer("edges", (lines * size[0] if fine else 1,), np.int32)
         if fine:
             meshes = (a["vertices"], moments.position, a["faces"], a["beside"], *counts)
-            shown = (layer.vis, layer.edge, layer.picture, layer.marks, layer.level)
+            told = (int(self._tells_kinds(size)), self._kinds(views, size))
+            shown = (layer.vis, layer.edge, layer.picture, layer.marks, layer.level, *told)
             extent = (views, *size)
             self._edges.find_edges(*seen[:2], *meshes, *shown, edges, *extent, *self._backend.crew(lines))
         shapes = (scene.static_faces, layer.vis, edges, int(fine))

@@ -13,7 +13,7 @@ import taichi as ti
 from . import crew
 from .gather import LANES, I, fv, iv
 from .geometry import i1, u64s
-from .ink import TOUCH, quiet
+from .ink import FOLD, TOUCH, quiet
 from .paint import INK, NOTHING
 
 HALF = LANES // 2
@@ -106,6 +106,17 @@ def broadened(e, f, g, w, w_g):
 
 
 @ti.func
+def ended(differs, e, f, w, v, behind, beyond):
+    """Sixteen times what ``edges.border`` says of two neighbours: whether a surface ends between them, and
+    whether it bends there. behind, beyond: 1/z of those next to them"""
+    fold = ti.select(2.0 * w - behind - v > FOLD * w * w, ti.select(w > v, I(1), I(0)), I(0))
+    fold |= ti.select(2.0 * v - beyond - w > FOLD * v * v, ti.select(v > w, I(1), I(0)), I(0))
+    ends = ti.select(((e ^ f) >> 16) != 0, I(1), fold)
+    bends = ti.select(ends != 0, I(0), turned(e, f))
+    return ti.select(differs != 0, ends, I(0)), ti.select(differs != 0, bends, I(0))
+
+
+@ti.func
 def bits_of(a, b, powers):
     """A word with a bit for each lane of ``a`` that is not zero, and from bit 16 on for each of ``b``."""
     chosen = ti.select(a != 0, powers, I(0)) | ti.select(b != 0, powers << LANES, I(0))
@@ -125,7 +136,9 @@ def find_borders(
     level: i1,
     first_moving: ti.i32,
     outline: ti.template(),
+    telling: ti.i32,
     found: i1,
+    kinds: i1,
     marks: i1,
     views: ti.i32,
     runs: ti.i32,
@@ -139,7 +152,9 @@ def find_borders(
     vis, vis_word, vis_number: the same memory, a run is two vectors; marks: of each run, a bit for each
     pixel at which something ends; found, three words of a run: a bit for each pixel that may have a line
     towards its left, from bit 16 on its right neighbour; above, below; and one for each pixel that moves.
-    Where a surface that moves has several colours is not looked at.
+    Where a surface that moves has several colours is not looked at. kinds, two words of a run, if
+    ``telling``: a bit for each pixel between which and the one on its right a surface ends, from bit 16 on
+    where one bends; the same of the pixel below.
     """
     for slot in range(slots):
         line = crew.task(slot, views * height, queue, host)
@@ -155,6 +170,7 @@ def find_borders(
                 if level[k] < INK:
                     continue
                 ends, moving, beside, upright = 0, 0, 0, 0
+                to_right, to_below = 0, 0
                 if not quiet(k, b, y, runs, height, runs * LANES, solid, vis):
                     left = 1 if b > 0 else 0
                     right = 1 if b < runs - 1 else 0
@@ -195,6 +211,19 @@ def find_borders(
                             w_right[LANES - 1] = w_after[1]
                             w_above = odd_lanes(vis_number[2 * (k - up)], vis_number[2 * (k - up) + 1])
                             w_below = odd_lanes(vis_number[2 * (k + down)], vis_number[2 * (k + down) + 1])
+                            if telling == 1:
+                                behind = w_left
+                                behind[0] = w_before[LANES - 1] if b > 0 else w[0]
+                                beyond = from_right(w_right, w_right, 1)
+                                beyond[LANES - 2] = w_right[LANES - 1] if b < runs - 1 else w[LANES - 1]
+                                beyond[LANES - 1] = w_after[3]
+                                some, bent = ended(t ^ t_right, e, e_right, w, w_right, behind, beyond)
+                                to_right = bits_of(some, bent, powers)
+                                lower = odd_lanes(
+                                    vis_number[2 * (k + far_down)], vis_number[2 * (k + far_down) + 1]
+                                )
+                                some, bent = ended(t ^ t_below, e, e_below, w, w_below, w_above, lower)
+                                to_below = bits_of(some, bent, powers)
                             allowed = 0.03 * w * w
                             across = magnitude(2.0 * w - w_left - w_right)
                             along = magnitude(2.0 * w - w_above - w_below)
@@ -240,4 +269,6 @@ def find_borders(
                 found[3 * k] = beside
                 found[3 * k + 1] = upright
                 found[3 * k + 2] = moving
+                if telling == 1:
+                    kinds[2 * k], kinds[2 * k + 1] = to_right, to_below
                 marks[k] = ends

@@ -30,11 +30,11 @@ from .geometry import (
     u64s,
     vec3,
 )
+from .ink import FOLD
 from .ink import level as level_with
-from .paint import RUN, SMOOTH
+from .paint import INK, RUN, SMOOTH
 
 NEVER = 2.0  # further than any neighbour
-FOLD = 0.03  # of 1/z squared: where a surface ends before itself
 OUTLINE, BEND = 2, 1
 FAR = 12  # triangles after which an end is no longer looked for
 REACH = 3  # pixels from which an edge is asked for
@@ -102,8 +102,8 @@ def ended_at(
     joined: ti.template(),
     counts,
 ):
-    """How many steps from a ray through triangle ``t`` its surface is left, and whether the edge over which it
-    is lies rather across these steps than those to the side, ``beside``.
+    """How many steps from a ray through triangle ``t`` its surface is left, and whether the edge over which
+    it is lies rather across these steps than those to the side, ``beside``.
 
     Over edges it goes on to the next triangle, unless that one is turned away or there is none; ``far``
     triangles at most.
@@ -250,6 +250,8 @@ def find_edges(
     picture: u32s,
     marks: i1,
     level: i1,
+    told: ti.i32,
+    kinds: i1,
     found: i1,
     views: ti.i32,
     width: ti.i32,
@@ -260,8 +262,8 @@ def find_edges(
 ):
     """Where edges pass between each pixel and the one on its right, from bit 8 on the one below; 0 for none.
 
-    marks, level: of blocks, pixels at which something ends, and what is left to do; joined: as
-    ``adjacency.beside`` has it
+    marks, level: of blocks, pixels at which something ends, and what is left to do; told: whether ``kinds``
+    says of blocks with lines where surfaces end (``borders.find_borders``); joined: as ``adjacency.beside``
     """
     for slot in range(slots):
         line = crew.task(slot, views * height, queue, host)
@@ -284,6 +286,10 @@ def find_edges(
                 bits = (1 << count) - 1
                 if level[k] >= SMOOTH:
                     bits &= marks[k]
+                known = told == 1 and level[k] >= INK
+                if known:
+                    either = kinds[2 * k] | kinds[2 * k + 1]
+                    bits &= either | either >> RUN
                 while bits != 0:
                     i = 31 - ti.math.clz(bits)
                     bits ^= 1 << i
@@ -295,30 +301,34 @@ def find_edges(
                         if below == 1:
                             stride, before, after, along, aside = width, y, height - 1 - y, down, step
                         to = at + stride
-                        if after > 0 and triangle(vis, at) != triangle(vis, to):
-                            behind = at - stride if before > 0 else at
-                            beyond = to + stride if after > 1 else to
+                        behind = at - stride if before > 0 else at
+                        beyond = to + stride if after > 1 else to
+                        kind = 0
+                        if known:
+                            word = kinds[2 * k + below] >> i
+                            kind = OUTLINE if word & 1 else (BEND if word >> RUN & 1 else 0)
+                        elif after > 0:
                             kind = border(behind, at, to, beyond, edge, vis)
-                            if kind != 0:
-                                s = NEVER
-                                if told_apart(behind, at, to, beyond, picture):
-                                    s = passing(
-                                        at,
-                                        to,
-                                        kind,
-                                        m,
-                                        eye,
-                                        ray,
-                                        along,
-                                        aside,
-                                        vis,
-                                        vertices,
-                                        position,
-                                        faces,
-                                        joined,
-                                        counts,
-                                    )
-                                code |= coded(kind, s) << (8 * below)
+                        if kind != 0:
+                            s = NEVER
+                            if told_apart(behind, at, to, beyond, picture):
+                                s = passing(
+                                    at,
+                                    to,
+                                    kind,
+                                    m,
+                                    eye,
+                                    ray,
+                                    along,
+                                    aside,
+                                    vis,
+                                    vertices,
+                                    position,
+                                    faces,
+                                    joined,
+                                    counts,
+                                )
+                            code |= coded(kind, s) << (8 * below)
                     found[at] = code
 
 

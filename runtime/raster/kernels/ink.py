@@ -19,6 +19,8 @@ from .paint import RUN as BLOCK
 
 i32s = ti.types.ndarray(ti.i32, ndim=1)
 TOUCH = 0.04  # metres
+EVERY = (1 << BLOCK) - 1
+FOLD = 0.03  # of 1/z squared: where a surface ends before itself
 
 
 @ti.func
@@ -309,31 +311,39 @@ def ink_kernels(style: Style) -> SimpleNamespace:
                     if level[k] < INK:
                         continue
                     beside, upright, moving = found[3 * k], found[3 * k + 1], found[3 * k + 2]
-                    if (beside | upright | moving) != 0:
-                        bits = marks[k]
-                        for i in range(BLOCK):
-                            x = b * BLOCK + i
-                            at = line * width + x
-                            two, four = beside >> i & 0x10001, upright >> i & 0x10001
-                            if (two | four) != 0:
-                                ways = (two | two >> 15) & 3 | ((four | four >> 15) & 3) << 2
-                                draw(
-                                    x,
-                                    y,
-                                    at,
-                                    ways,
-                                    width,
-                                    height,
-                                    weight,
-                                    first_moving,
-                                    picture,
-                                    edge,
-                                    vis,
-                                    owner,
-                                    linear,
-                                    table,
-                                )
-                            elif (moving >> i) & 1 and one_color[ti.cast(edge[at] >> 16, ti.i32)] == 0:
+                    lines = (beside | beside >> BLOCK | upright | upright >> BLOCK) & EVERY
+                    others = moving & ~lines
+                    while lines != 0:
+                        i = 31 - ti.math.clz(lines)
+                        lines ^= 1 << i
+                        x = b * BLOCK + i
+                        two, four = beside >> i & 0x10001, upright >> i & 0x10001
+                        ways = (two | two >> 15) & 3 | ((four | four >> 15) & 3) << 2
+                        draw(
+                            x,
+                            y,
+                            line * width + x,
+                            ways,
+                            width,
+                            height,
+                            weight,
+                            first_moving,
+                            picture,
+                            edge,
+                            vis,
+                            owner,
+                            linear,
+                            table,
+                        )
+                    if others != 0:
+                        bits, last, many = marks[k], -1, False
+                        while others != 0:
+                            i = 31 - ti.math.clz(others)
+                            others ^= 1 << i
+                            s = ti.cast(edge[line * width + b * BLOCK + i] >> 16, ti.i32)
+                            if s != last:
+                                last, many = s, one_color[s] == 0
+                            if many:
                                 bits |= 1 << i
                         marks[k] = bits
 

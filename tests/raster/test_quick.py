@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import os
 import subprocess
 import sys
@@ -25,8 +26,29 @@ def test_an_error_in_a_kernel_names_its_place() -> None:
 
     with pytest.raises(ti.TaichiNameError, match="no_such_thing") as caught:
         wrong()
-    assert f'File "{__file__}", line 24, in wrong' in str(caught.value)
+    assert f'File "{__file__}", line 25, in wrong' in str(caught.value)
     assert "print(no_such_thing + 1)" in str(caught.value)
+
+
+def test_garbage_waits_until_a_kernel_is_read_and_no_longer() -> None:
+    start("cpu")
+    import taichi as ti
+
+    seen: list[bool] = []
+
+    @ti.kernel
+    def small():  # type: ignore[no-untyped-def]
+        ti.static(seen.append(gc.isenabled()))
+
+    small()
+    assert seen == [False]
+    assert gc.isenabled()
+    gc.disable()
+    try:
+        small()
+        assert not gc.isenabled()
+    finally:
+        gc.enable()
 
 
 COLD = """

@@ -21,7 +21,6 @@ from platformdirs import user_cache_path
 from .quick import quicken
 
 ALIGNMENT = 64  # bytes
-STRETCH = 512  # turns of a parallel loop that Taichi gives a thread of the CPU at least
 DEVICES = ("auto", "cpu", "cuda", "vulkan")
 
 
@@ -44,8 +43,11 @@ class Backend:
     def crew(self, tasks: int) -> tuple[Any, int, bool]:
         """What kernels ask for that share ``tasks`` as ``kernels/crew.py`` says: a queue, how many slots,
         and whether tasks are drawn from the queue. Only for one call."""
-        slots = self.threads * max(tasks, STRETCH) if self.on_host else tasks
-        return self.upload(np.zeros(1, np.int32)), slots, self.on_host
+        from .kernels import crew  # only now: it imports taichi
+
+        if not self.on_host:
+            return self.upload(np.zeros(1, np.int32)), tasks, False
+        return crew.queue_for(tasks, self.threads), self.threads * max(tasks, crew.STRETCH), True
 
     def buffer(self, shape: tuple[int, ...], dtype: DTypeLike) -> Any:
         """An array that kernels can use: numpy zeros on the host (:func:`aligned`), else a Taichi ndarray."""

@@ -45,7 +45,6 @@ class Passes:
 
     def __init__(self, backend: Backend, buffer: Buffers, style: Style) -> None:
         from .kernels import (
-            borders,
             edges,
             grain,
             hatch,
@@ -68,7 +67,7 @@ class Passes:
         self.SHADE: int = paint.SHADE
         self.shading = shading.shading_kernels(style)
         self._ink = ink.ink_kernels(style)
-        self._borders = vectorised(borders.find_borders) if backend.on_host else None
+        self._ink_runs = vectorised(self._ink.runs) if backend.on_host else None
         self.run: int = self.shading.RUN
         table = np.round(to_encoded(np.arange(4096) / 4095.0) * 255.0).astype(np.uint32)
         self.film = backend.upload(film_table())
@@ -241,27 +240,28 @@ class Passes:
         seen = (view, layer.picture, layer.edge, layer.vis)
         crew = self._backend.crew
         lines = views * size[1]
-        if self._borders is None or size[0] % self.run:
+        if self._ink_runs is None or size[0] % self.run:
             named = (a["surface_object"], a["one_color"], first)
             self._ink.rows(*seen, layer.solid, *named, *lookup, *kept, views, *size, *crew(lines))
             return
-        extent = (views, size[0] // self.run, size[1])
         pixels = views * size[0] * size[1]
-        found = self._buffer("found", (3 * pixels // self.run,), np.int32)
+        found = self._found(views, size)
         vis, edge = layer.vis[:pixels], layer.edge[:pixels]
         words, numbers = (vis.view(kind).reshape(-1, self.run) for kind in (np.int32, np.float32))
-        told = (int(self._tells_kinds(size)), found, self._kinds(views, size), layer.marks)
-        runs = (layer.solid, layer.level, first, self._style.outline, *told)
-        self._borders(
-            vis, words, numbers, edge.view(np.int32).reshape(-1, self.run), *runs, *extent, *crew(lines)
-        )
-        if self._style.outline:
-            named = (a["surface_object"], a["one_color"], first)
-            self._ink.found(*seen, *named, *lookup, found, *kept, views, *size, *crew(lines))
+        memory = (words, numbers, edge.view(np.int32).reshape(-1, self.run), layer.solid)
+        named = (a["surface_object"], a["one_color"], first)
+        told = (int(self._tells_kinds(size)), found, self._kinds(views, size), *kept)
+        self._ink_runs(*seen, *memory, *named, *lookup, *told, views, *size, *crew(lines)[:2])
 
     def _tells_kinds(self, size: tuple[int, int]) -> bool:
         """Whether lines and edges are found by the same look at borders."""
-        return self._borders is not None and self._style.outline and not size[0] % self.run and size[1] > FINE
+        return (
+            self._ink_runs is not None and self._style.outline and not size[0] % self.run and size[1] > FINE
+        )
+
+    def _found(self, views: int, size: tuple[int, int]) -> Any:
+        """Where lines may be and what moves, three words of a run (``borders.find_borders``)."""
+        return self._buffer("found", (3 * views * size[0] * size[1] // self.run,), np.int32)
 
     def _kinds(self, views: int, size: tuple[int, int]) -> Any:
         """What ends or bends beside each pixel, two words of a run, where that is told."""
@@ -288,7 +288,7 @@ class Passes:
             shown = (layer.vis, layer.edge, layer.picture, layer.marks, layer.level, *told)
             extent = (views, *size)
             self._edges.find_edges(*seen[:2], *meshes, *shown, edges, *extent, *self._backend.crew(lines))
-        shapes = (scene.static_faces, layer.vis, edges, int(fine))
+        shapes = (scene.moving_surface, layer.edge, edges, int(fine))
         final, runs = color.reshape(-1), (layer.marks, layer.level, self.linear, self.table)
         crew = self._backend.crew(views * size[1])
         if not self._backend.on_host or size[0] % self.run:
@@ -300,6 +300,7 @@ class Passes:
         picture = layer.picture[: len(layer.picture) // run * run]
         self._smooth_runs(
             *shapes,
+            self._found(views, size),
             picture,
             picture.view(np.int32).reshape(-1, run),
             picture.view(np.uint8).reshape(-1, run),

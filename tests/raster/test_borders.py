@@ -19,8 +19,8 @@ def test_lines_are_those_found_pixel_by_pixel(style: str, size: tuple[int, int])
     drawer = Renderer("cpu", STYLES[style])
     drawer.load(room())
     fast = drawer.render(still(2), views, size).color
-    assert drawer._passes._borders is not None
-    drawer._passes._borders = None
+    assert drawer._passes._ink_runs is not None
+    drawer._passes._ink_runs = None
     slow = drawer.render(still(2), views, size).color
     assert np.array_equal(fast, slow)
     assert len(np.unique(fast)) > 20

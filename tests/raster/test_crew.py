@@ -6,10 +6,11 @@ import numpy as np
 import pytest
 import taichi as ti
 
-from runtime.raster.device import STRETCH, start
+from runtime.raster.device import start
 
 start("cpu")
 from runtime.raster.kernels import crew  # noqa: E402 - its functions want Taichi started
+from runtime.raster.kernels.crew import MOST, STRETCH  # noqa: E402
 from runtime.raster.kernels.geometry import i1  # noqa: E402
 
 
@@ -32,6 +33,19 @@ def test_every_task_is_done_once(tasks: int) -> None:
     threads = start("cpu").threads
     assert slots >= threads * STRETCH  # or Taichi would leave a thread without work
     assert np.bincount(order[order >= 0], minlength=tasks).max() == 1
+
+
+def test_tasks_that_lie_together_are_done_by_one_thread() -> None:
+    tasks = 5 * STRETCH
+    queue, slots, host = start("cpu").crew(tasks)
+    done, order = np.zeros(tasks, np.int32), np.full(slots, -1, np.int32)
+    tally(done, order, queue, slots, host)
+    threads = start("cpu").threads
+    by = np.full(tasks, -1)  # the thread that did each task
+    for thread, mine in enumerate(order.reshape(threads, -1)):
+        by[mine[mine >= 0]] = thread
+    together = by[: tasks // MOST * MOST].reshape(-1, MOST)
+    assert (together == together[:, :1]).all()
 
 
 def test_on_a_gpu_every_slot_has_its_task() -> None:

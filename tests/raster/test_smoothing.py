@@ -41,7 +41,8 @@ def smoothed(
     layer = Layer(nowhere, picture, np.zeros_like(picture), none, marks.reshape(-1), level.reshape(-1))
     arrays = {"vertices": np.zeros((3, 3), np.float32), "faces": np.zeros((1, 3), np.int32)}
     arrays["beside"] = arrays["faces"] - 1
-    loaded = SimpleNamespace(arrays=arrays, static_vertices=3, scene=SimpleNamespace(static_faces=1))
+    scene = SimpleNamespace(static_faces=1, moving_surface=1)
+    loaded = SimpleNamespace(arrays=arrays, static_vertices=3, scene=scene)
     moments = SimpleNamespace(position=np.zeros((1, 1, 3), np.float32))
     seen = (np.ones((views, 16), np.float32), np.zeros(views, np.int32), views)
     if not by_runs:

@@ -13,6 +13,7 @@ others.
 import taichi as ti
 
 from . import crew
+from .borders import FOLD
 from .geometry import (
     f2,
     f3,
@@ -30,7 +31,6 @@ from .geometry import (
     u64s,
     vec3,
 )
-from .ink import FOLD
 from .ink import level as level_with
 from .paint import INK, RUN, SMOOTH
 
@@ -58,33 +58,34 @@ def corners(t, m, eye, vertices: ti.template(), position: ti.template(), faces: 
 
 
 @ti.func
-def crossed(a, along, facing, ray, step):
-    """How many steps from a ray to the edge of a triangle that begins at ``a``, if they lead out of it there.
+def crossed(change, before, facing):
+    """How many steps from a ray to the edge of a triangle, if they lead out of it there.
 
-    along: to where the edge ends; facing: determinant of the triangle's corners. What is subtracted is small
-    where it matters, for small triangles far away.
+    change, before: products of a step and of the ray with the normal of the plane through eye and edge;
+    facing: determinant of the triangle's corners
     """
-    change = along.dot(step.cross(a))
     steps = NEVER
     if change * facing < 0:
-        steps = greater(-along.dot(ray.cross(a)) / change, 0.0)
+        steps = greater(-before / change, 0.0)
     return steps
 
 
 @ti.func
 def left_at(p, q, r, ray, step):
-    """How many steps from a ray a triangle is left, over which edge, where that begins and what it leads
-    along, and the triangle's facing."""
-    facing = p.dot(q.cross(r))
-    edge, begin, along = 0, p, q - p
-    out = crossed(p, along, facing, ray, step)
-    other = crossed(q, r - q, facing, ray, step)
+    """How many steps from a ray a triangle is left, over which edge, the normal of the plane through eye and
+    that edge, and the triangle's facing. Corners less corners: small where it matters, for small triangles
+    far away."""
+    normal, over_q, over_r = p.cross(q - p), q.cross(r - q), r.cross(p - r)
+    facing = normal.dot(r)
+    edge = 0
+    out = crossed(step.dot(normal), ray.dot(normal), facing)
+    other = crossed(step.dot(over_q), ray.dot(over_q), facing)
     if other < out:
-        out, edge, begin, along = other, 1, q, r - q
-    other = crossed(r, p - r, facing, ray, step)
+        out, edge, normal = other, 1, over_q
+    other = crossed(step.dot(over_r), ray.dot(over_r), facing)
     if other < out:
-        out, edge, begin, along = other, 2, r, p - r
-    return out, edge, begin, along, facing
+        out, edge, normal = other, 2, over_r
+    return out, edge, normal, facing
 
 
 @ti.func
@@ -109,7 +110,7 @@ def ended_at(
     triangles at most.
     """
     out, edge, facing, at = 0.0, 0, 0.0, t
-    begin, along = vec3(0), vec3(0)
+    normal = vec3(0)
     for k in range(far + 1):
         following = t
         if k > 0:
@@ -117,13 +118,13 @@ def ended_at(
         if following < 0 or out >= 1.0:
             break
         p, q, r = corners(following, m, eye, vertices, position, faces, counts)
-        steps, side, start, way, turn = left_at(p, q, r, ray, step)
+        steps, side, plane, turn = left_at(p, q, r, ray, step)
         if k == 0:
             facing = turn
         elif turn * facing <= 0:
             break
-        out, edge, at, begin, along = greater(out, steps), side, following, start, way
-    return out, ti.abs(along.dot(step.cross(begin))) >= ti.abs(along.dot(beside.cross(begin)))
+        out, edge, at, normal = greater(out, steps), side, following, plane
+    return out, ti.abs(step.dot(normal)) >= ti.abs(beside.dot(normal))
 
 
 @ti.func

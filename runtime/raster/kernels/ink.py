@@ -13,14 +13,14 @@ import taichi as ti
 
 from ..types import Style
 from . import crew
-from .geometry import f1, f2, i1, nearness, triangle, u32s, u64s, vec3
+from .borders import TOUCH, find_borders, quiet
+from .gather import fv, iv
+from .geometry import f1, f2, i1, nearness, u32s, u64s, vec3
 from .paint import INK, NOTHING, decode, encode, unpack_normal
 from .paint import RUN as BLOCK
 
 i32s = ti.types.ndarray(ti.i32, ndim=1)
-TOUCH = 0.04  # metres
 EVERY = (1 << BLOCK) - 1
-FOLD = 0.03  # of 1/z squared: where a surface ends before itself
 
 
 @ti.func
@@ -70,23 +70,6 @@ def line_weight(e, f, w, w_f, w_back, first_moving, owner: ti.template()):
         turn = bend(e, f)
         if turn < (0.35 if moves else 0.75) and gap > -allowed:
             out = 0.45 if moves else 0.3
-    return out
-
-
-@ti.func
-def quiet(k, b, y, blocks, height, width, solid: ti.template(), vis: ti.template()):
-    """Whether one triangle of the set is in all of block ``k``, the ``b``-th of row ``y``, and around it."""
-    whole = solid[k]
-    out = (
-        whole != 0
-        and (y == 0 or solid[k - blocks] == whole)
-        and (y == height - 1 or solid[k + blocks] == whole)
-    )
-    begin = (k - b) // blocks * width + b * BLOCK
-    if out and b > 0:
-        out = triangle(vis, begin - 1) + 1 == ti.max(whole, 0)
-    if out and b < blocks - 1:
-        out = triangle(vis, begin + BLOCK) + 1 == ti.max(whole, 0)
     return out
 
 
@@ -279,17 +262,23 @@ def ink_kernels(style: Style) -> SimpleNamespace:
                     marks[k] = bits
 
     @ti.kernel
-    def ink_found(
+    def ink_runs(
         view: f2,
         picture: u32s,
         edge: u32s,
         vis: u64s,
+        vis_word: iv,
+        vis_number: fv,
+        edge_word: iv,
+        solid: i32s,
         owner: i1,
         one_color: i1,
         first_moving: ti.i32,
         linear: f1,
         table: u32s,
+        telling: ti.i32,
         found: i32s,
+        kinds: i32s,
         marks: i32s,
         level: i32s,
         views: ti.i32,
@@ -297,54 +286,75 @@ def ink_kernels(style: Style) -> SimpleNamespace:
         height: ti.i32,
         queue: i1,
         slots: ti.i32,
-        host: ti.template(),
     ):
-        """As ink_rows, where :func:`borders.find_borders` said that lines may be; its marks are completed."""
+        """As ink_rows, for rows of whole runs, on the host: where lines may be is found for sixteen pixels at
+        a time (:func:`borders.find_borders`), and these drawn while the row is at hand.
+
+        vis_word, vis_number, edge_word: the memory of ``vis`` and of ``edge``
+        """
         for slot in range(slots):
-            line = crew.task(slot, views * height, queue, host)
+            line = crew.task(slot, views * height, queue, True)
             if line < views * height:
                 weight = 0.0065 * view[line // height, 13]
                 y = line % height
                 blocks = width // BLOCK
-                for b in range(blocks):
-                    k = line * blocks + b
-                    if level[k] < INK:
-                        continue
-                    beside, upright, moving = found[3 * k], found[3 * k + 1], found[3 * k + 2]
-                    lines = (beside | beside >> BLOCK | upright | upright >> BLOCK) & EVERY
-                    others = moving & ~lines
-                    while lines != 0:
-                        i = 31 - ti.math.clz(lines)
-                        lines ^= 1 << i
-                        x = b * BLOCK + i
-                        two, four = beside >> i & 0x10001, upright >> i & 0x10001
-                        ways = (two | two >> 15) & 3 | ((four | four >> 15) & 3) << 2
-                        draw(
-                            x,
-                            y,
-                            line * width + x,
-                            ways,
-                            width,
-                            height,
-                            weight,
-                            first_moving,
-                            picture,
-                            edge,
-                            vis,
-                            owner,
-                            linear,
-                            table,
-                        )
-                    if others != 0:
-                        bits, last, many = marks[k], -1, False
-                        while others != 0:
-                            i = 31 - ti.math.clz(others)
-                            others ^= 1 << i
-                            s = ti.cast(edge[line * width + b * BLOCK + i] >> 16, ti.i32)
-                            if s != last:
-                                last, many = s, one_color[s] == 0
-                            if many:
-                                bits |= 1 << i
-                        marks[k] = bits
+                find_borders(
+                    line,
+                    vis,
+                    vis_word,
+                    vis_number,
+                    edge_word,
+                    solid,
+                    level,
+                    first_moving,
+                    outline,
+                    telling,
+                    found,
+                    kinds,
+                    marks,
+                    blocks,
+                    height,
+                )
+                if ti.static(outline):
+                    for b in range(blocks):
+                        k = line * blocks + b
+                        if level[k] < INK:
+                            continue
+                        beside, upright, moving = found[3 * k], found[3 * k + 1], found[3 * k + 2]
+                        lines = (beside | beside >> BLOCK | upright | upright >> BLOCK) & EVERY
+                        others = moving & ~lines
+                        while lines != 0:
+                            i = 31 - ti.math.clz(lines)
+                            lines ^= 1 << i
+                            x = b * BLOCK + i
+                            two, four = beside >> i & 0x10001, upright >> i & 0x10001
+                            ways = (two | two >> 15) & 3 | ((four | four >> 15) & 3) << 2
+                            draw(
+                                x,
+                                y,
+                                line * width + x,
+                                ways,
+                                width,
+                                height,
+                                weight,
+                                first_moving,
+                                picture,
+                                edge,
+                                vis,
+                                owner,
+                                linear,
+                                table,
+                            )
+                        if others != 0:
+                            bits, last, many = marks[k], -1, False
+                            while others != 0:
+                                i = 31 - ti.math.clz(others)
+                                others ^= 1 << i
+                                s = ti.cast(edge[line * width + b * BLOCK + i] >> 16, ti.i32)
+                                if s != last:
+                                    last, many = s, one_color[s] == 0
+                                if many:
+                                    bits |= 1 << i
+                            marks[k] = bits
 
-    return SimpleNamespace(rows=ink_rows, found=ink_found)
+    return SimpleNamespace(rows=ink_rows, runs=ink_runs)

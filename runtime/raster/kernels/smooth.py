@@ -14,9 +14,9 @@ import taichi as ti
 from . import crew
 from .edges import moved, scaled_down
 from .gather import LANES, I, V, fv, iv
-from .geometry import f1, greater, i1, lesser, triangle, u8s, u32s, u64s
+from .geometry import f1, greater, i1, lesser, u8s, u32s
+from .paint import INK, NOTHING, SMOOTH, decode
 from .paint import RUN as BLOCK
-from .paint import SMOOTH, decode
 
 SEARCH = 9  # pixels looked along an edge, either way
 LEAST = 0.004  # of a pixel that comes from others: less does not show
@@ -141,15 +141,20 @@ def other_side(at, width, kind):
 
 
 @ti.func
+def moving(e, first_moving):
+    """Whether what is seen in a pixel of the edge buffer moves."""
+    return ti.cast(e >> 16, ti.i32) >= first_moving and e != ti.u32(NOTHING)
+
+
+@ti.func
 def drawn_to_edges(
     x,
     y,
     at,
     width,
     height,
-    static_faces,
+    moves,
     src: ti.template(),
-    vis: ti.template(),
     edges: ti.template(),
     fine,
     linear: ti.template(),
@@ -160,7 +165,7 @@ def drawn_to_edges(
     beside, upright = False, False
     if fine != 0:
         # lines of what moves are up to two pixels wide
-        reach = 2 if triangle(vis, at) >= static_faces else 1
+        reach = 2 if moves else 1
         a, b, beside = moved(at, 1, 0, x, width - 1 - x, reach, edges)
         c, d, upright = moved(at, width, 8, y, height - 1 - y, reach, edges)
     out = src[at]
@@ -187,9 +192,8 @@ def smoothed(
     at,
     width,
     height,
-    static_faces,
+    moves,
     src: ti.template(),
-    vis: ti.template(),
     edges: ti.template(),
     fine,
     linear: ti.template(),
@@ -205,9 +209,7 @@ def smoothed(
         low = lesser(lesser(lesser(n, s), lesser(w, e)), m)
         high = greater(greater(greater(n, s), greater(w, e)), m)
         if high - low > enough(high):
-            out, known = drawn_to_edges(
-                x, y, at, width, height, static_faces, src, vis, edges, fine, linear, table
-            )
+            out, known = drawn_to_edges(x, y, at, width, height, moves, src, edges, fine, linear, table)
             if not known:
                 out = c
                 nw, ne = number(src[at - width - 1]), number(src[at - width + 1])
@@ -250,8 +252,8 @@ def near_marks(line, y, b, blocks, height, marks: ti.template()):
 
 @ti.kernel
 def smooth_rows(
-    static_faces: ti.i32,
-    vis: u64s,
+    first_moving: ti.i32,
+    edge: u32s,
     edges: i1,
     fine: ti.i32,
     src: u32s,
@@ -281,9 +283,8 @@ def smooth_rows(
                     at = line * width + x
                     c = src[at]
                     if bits & 1:
-                        c = smoothed(
-                            x, y, at, width, height, static_faces, src, vis, edges, fine, linear, table
-                        )
+                        moves = moving(edge[at], first_moving)
+                        c = smoothed(x, y, at, width, height, moves, src, edges, fine, linear, table)
                     bits >>= 1
                     final[3 * at] = ti.cast(c & 0xFF, ti.u8)
                     final[3 * at + 1] = ti.cast((c >> 8) & 0xFF, ti.u8)
@@ -345,10 +346,11 @@ def pack(k, from_bytes: ti.template(), to_bytes: ti.template()):
 
 @ti.kernel
 def smooth_runs(
-    static_faces: ti.i32,
-    vis: u64s,
+    first_moving: ti.i32,
+    edge: u32s,
     edges: i1,
     fine: ti.i32,
+    told: i1,
     src: u32s,
     row: iv,
     quarter: bv,
@@ -370,6 +372,7 @@ def smooth_runs(
 ):
     """As smooth_rows, for widths that LANES divides.
 
+    told: three words of each run that was inked, the last one a bit for each pixel that moves (``borders``)
     row, quarter: the memory of ``src``; third: that of ``final``; scratch, bits_of, found: SCRATCH vectors of
     each worker, the same memory
     """
@@ -441,14 +444,19 @@ def smooth_runs(
                 of = ti.select(steep > flat, V(UPRIGHT), V(0.0)) + ti.select(back >= 0.0, V(BACK), V(0.0))
                 scratch[own + 4] = of + m * 4.0 + other * 1024.0
                 stepped = walks | seen
+                here_moves = told[3 * k + 2]
+                if level[k] < INK and fine != 0:
+                    here_moves = 0
+                    for i in range(LANES):
+                        if moving(edge[begin + i], first_moving):
+                            here_moves |= 1 << i
                 while bits != 0:
                     i = 31 - ti.math.clz(bits)
                     bits ^= 1 << i
                     at = begin + i
                     x = b * LANES + i
-                    c, known = drawn_to_edges(
-                        x, y, at, width, height, static_faces, src, vis, edges, fine, linear, table
-                    )
+                    moves = (here_moves >> i) & 1 == 1
+                    c, known = drawn_to_edges(x, y, at, width, height, moves, src, edges, fine, linear, table)
                     if not known:
                         c = src[at]
                         if (stepped >> i) & 1:

@@ -103,7 +103,7 @@ class Passes:
         left = self._buffer("left", (views * size[1] * -(-size[0] // self.run),), np.int32)
         self._shade_rows(loaded, moments, layer, seen, size, lines, left, False)
         if len(between):
-            self._match(layer, between, left, size)
+            self._match(loaded, layer, between, left, size)
             lines = np.ascontiguousarray(between[:, 0])
             self._shade_rows(loaded, moments, layer, seen, size, lines, left, True)
         extent = (views, *size)
@@ -197,16 +197,22 @@ class Passes:
         if loaded.sunlight is not None:
             self._lay_sunlight(loaded, moments, layer, seen, rows, size)
 
-    def _match(self, layer: Layer, rows: NDArray[np.int32], left: Any, size: tuple[int, int]) -> None:
+    def _match(
+        self, loaded: Loaded, layer: Layer, rows: NDArray[np.int32], left: Any, size: tuple[int, int]
+    ) -> None:
         """Colours of rows that lie between shaded ones; ``left``: what cannot be had from those."""
         width, run, crew = size[0], self.run, self._backend.crew(len(rows))
         if self._match_runs is not None and width % run == 0:
             buffers = (layer.vis, layer.picture, layer.edge)
             wide = (x[: len(x) // run * run].reshape(-1, run) for x in buffers)
-            self._match_runs(rows, *wide, layer.solid, layer.level, left, width // run, *crew)
+            named = (loaded.arrays["info"], loaded.arrays["one_color"])
+            self._match_runs(
+                rows, *named, *buffers, *wide, layer.solid, layer.level, left, width // run, *crew
+            )
         else:
             kept = (layer.vis, layer.picture, layer.edge, layer.solid, layer.level)
-            self._rows.match_rows(self._upload(rows), *kept, left, width, *crew)
+            named = (loaded.arrays["info"], loaded.arrays["one_color"])
+            self._rows.match_rows(self._upload(rows), *named, *kept, left, width, *crew)
 
     def _lay_sunlight(
         self,

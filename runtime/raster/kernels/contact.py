@@ -106,9 +106,9 @@ def touch(
                         if over < reach and ti.static((-1e9, -0.1)[layer]) < over:
                             share = 1.0 - ti.max(over, 0.0) / reach
                             own = area[v] if ti.static(layer == 0) else solid[v]
-                            ground[(2 * m + layer) * cells + cell] += (
-                                own * share * share * floor[2] * floor[2]
-                            )
+                            at_cell = (2 * m + layer) * cells + cell
+                            # written out: one thread has the moment, and += would be an atomic addition
+                            ground[at_cell] = ground[at_cell] + own * share * share * floor[2] * floor[2]
                             at = ti.Vector([cell % columns, cell // columns])
                             for a in ti.static(range(2)):
                                 low[2 * layer + a] = ti.min(low[2 * layer + a], at[a])

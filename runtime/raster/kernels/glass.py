@@ -146,5 +146,7 @@ def lay(
                                                 ends = ends or q != group[t, 0] or farther
                                         if ends:
                                             light *= 1.0 - (0.75 if group[t, 1] & HELD else 0.45)
-                                            marks[seen * runs + b] |= 1 << (x - b * run)
+                                            marks[seen * runs + b] = marks[seen * runs + b] | 1 << (
+                                                x - b * run
+                                            )
                                     picture[under] = encode(light, table)

@@ -29,7 +29,7 @@ from .geometry import (
     u64s,
     vec3,
 )
-from .paint import backdrop, developed, exposed, ramp
+from .paint import GLASS, GLOW, backdrop, developed, exposed, ramp
 
 STRETCH = 32  # pixels of a triangle between two colours that are worked out
 CARD = 16  # numbers kept for each triangle of the set
@@ -79,11 +79,11 @@ def fold_plain(
         material = info[t, 1] & 255
         flat = (info[t, 1] >> 8) & 1
         front, back = base * light_on(n, light), base * light_on(-n, light)
-        if material == 7:
+        if material == GLASS:
             front = base * 1.5 + vec3(0.10, 0.12, 0.13)
-        if material == 8:
+        if material == GLOW:
             front = base * 2.0 + 0.2
-        if material == 7 or material == 8:
+        if material == GLASS or material == GLOW:  # noqa: SIM109
             back, flat = front, 1
         card[at + 13] = ti.bit_cast(developed(front, film), ti.f32)
         card[at + 14] = ti.bit_cast(developed(back, film), ti.f32)

@@ -35,7 +35,20 @@ from .geometry import (
 )
 from .lamps import lamplight
 from .light import across, free_between, lit
-from .paint import NOTHING, RUN, SHADE, SHEET, backdrop, developed, exposed, pack_normal, packed, spread
+from .paint import (
+    GLASS,
+    GLOW,
+    NOTHING,
+    RUN,
+    SHADE,
+    SHEET,
+    backdrop,
+    developed,
+    exposed,
+    pack_normal,
+    packed,
+    spread,
+)
 from .pattern import broad_pattern, glazed
 from .rows import EVERY
 from .sheet import fold_kernel
@@ -204,7 +217,8 @@ def shading_kernels(style: Style) -> SimpleNamespace:
                             stop += 1
                     bits = ((1 << (stop - x)) - 1) << (x % RUN)
                     if sparse == 1 and todo & bits != 0:
-                        left[line * runs + x // RUN] |= bits
+                        # written out: one thread has the row, and |= would be an atomic operation
+                        left[line * runs + x // RUN] = left[line * runs + x // RUN] | bits
                     if todo & bits == 0:
                         joined = False
                     elif t < 0:
@@ -260,9 +274,9 @@ def shading_kernels(style: Style) -> SimpleNamespace:
                             nn *= 1.0 / ti.sqrt(ti.max(nn.norm_sqr(), 1e-12))
                             out = vec3(0)
                             key_light = 0.0
-                            if material == 7:
+                            if material == GLASS:
                                 out = glazed(base, ray, eye + ray * depth)
-                            elif material == 8:
+                            elif material == GLOW:
                                 out = base * 2.0 + 0.2
                             else:
                                 key_light = toned(nn.dot(sun), tones)
@@ -363,7 +377,7 @@ def shading_kernels(style: Style) -> SimpleNamespace:
                                 g1 = q2.cross(cross) * inverse
                                 g2 = cross.cross(q1) * inverse
                                 p0 -= eye
-                        if material == 7 or material == 8:
+                        if material == GLASS or material == GLOW:  # noqa: SIM109
                             joined = False
                             base = row3(color, t)
                             for xx in range(x, stop):
@@ -371,7 +385,7 @@ def shading_kernels(style: Style) -> SimpleNamespace:
                                 ray = first + step * ti.cast(xx, ti.f32)
                                 depth = 1.0 / nearness(vis, i)
                                 out = base * 2.0 + 0.2
-                                if material == 7:
+                                if material == GLASS:
                                     out = glazed(base, ray, eye + ray * depth)
                                 out += (horizon - out) * (bounded((depth - 2.0) * 0.04, 0.0, 1.0) * 0.36)
                                 picture[i] = developed(out, film)

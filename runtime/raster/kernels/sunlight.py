@@ -142,7 +142,8 @@ def lay_sun(
                     stop = limit if filled > 0 else x + 1
                     while stop < limit and triangle(vis, at + stop - x) == t:
                         stop += 1
-                    if t != last:
+                    bits = ((1 << (stop - x)) - 1) << (x % RUN)
+                    if t != last and todo & bits != 0:
                         last = t
                         of_all = DARK
                         if 0 <= t < static_faces:
@@ -162,7 +163,7 @@ def lay_sun(
                                 gain = warm * bounded(0.3 + 0.8 * facing, 0.0, 1.0)
                             else:
                                 of_all = DARK
-                    if of_all != DARK:
+                    if t == last and of_all != DARK and todo & bits != 0:
                         kind = of_all
                         p = eye + (first + step * ti.cast(x, ti.f32)) / nearness(vis, at)
                         end = eye + (first + step * ti.cast(stop - 1, ti.f32)) / nearness(

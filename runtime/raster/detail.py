@@ -10,6 +10,7 @@ views give one by one; a change of level moves outlines by less than a pixel.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import fast_simplification
 import numpy as np
@@ -59,6 +60,25 @@ class Levels:
         leveled, bodies = self.body >= 0, len(self.middle)
         sizes = np.bincount(self.body[leveled] * COUNT + self.level[leveled], minlength=bodies * COUNT)
         return int(sizes.reshape(bodies, COUNT).max(axis=1).sum() + (~leveled).sum())
+
+    @cached_property
+    def _vertices(self) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
+        """Which skinned vertices are of no body [V], and which each body has at each level [B, COUNT, V]."""
+        faces, count = self.scene.skinned.faces, len(self.scene.skinned.vertices)
+        loose = np.arange(count) < self.vertices
+        of = np.zeros((len(self.middle), COUNT, count), np.bool_)
+        for body in range(len(self.middle)):
+            for level in range(COUNT):
+                of[body, level, faces[(self.body == body) & (self.level == level)].reshape(-1)] = True
+        of_bodies = of.any(axis=(0, 1))
+        loose &= ~of_bodies
+        loose[faces[self.body < 0].reshape(-1)] = True  # what they share
+        return loose, of
+
+    def used(self, shown: NDArray[np.bool_]) -> NDArray[np.int32]:
+        """The skinned vertices that are needed where some levels of bodies are shown, [B, COUNT]."""
+        loose, of = self._vertices
+        return np.flatnonzero(loose | of[shown].any(axis=0)).astype(np.int32)
 
     def chosen(
         self,

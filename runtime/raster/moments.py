@@ -26,9 +26,10 @@ Buffers = Callable[[str, tuple[int, ...], type], Any]
 class Moments:
     """The moments that are drawn at a time, M of them, and one more in which nobody is there.
 
-    position, normal: float32 [M, V, 3] of skinned vertices; ball: float32 [M, C, 4] bounds of moving
-    clusters; frame [M + 1, 3], size, depth, coarse: their shadow maps; ground: [M + 1, 2, rows, columns]
-    how closely things stand over the floor, and over furniture
+    position, normal: float32 [M + 1, V, 3] of skinned vertices; ball: float32 [M + 1, C, 4] bounds of moving
+    clusters; of the last one of parts of the set alone, those that ``resting`` int32 [C] says, None without
+    hinges: float32 [M, K, 3, 4], matrices of these parts; frame [M + 1, 3], size, depth, coarse: their shadow
+    maps; ground: [M + 1, 2, rows, columns] how closely things stand over the floor, and over furniture
     """
 
     def __init__(self, backend: Backend, buffer: Buffers, style: Style) -> None:
@@ -39,45 +40,73 @@ class Moments:
         self.count, self.size = 1, 1
 
     def move(
-        self, loaded: Loaded, palettes: NDArray[np.float32], height: int, wanted: Any, skinned: int
+        self,
+        loaded: Loaded,
+        palettes: NDArray[np.float32],
+        height: int,
+        wanted: Any,
+        skinned: int,
+        only: NDArray[np.int32] | None = None,
     ) -> None:
         """Take ``palettes`` as the moments, for pictures of ``height`` rows.
 
-        wanted: int32 [C], 1 for clusters that some view may show; skinned: vertices that are needed
+        wanted: int32 [C], 1 for clusters that some view may show; skinned: how many vertices are needed
+        only: which ones, where neither shadows nor contact are asked for; None: all, and these as well
         """
         scene, a = loaded.scene, loaded.arrays
         clusters = len(scene.clusters) - scene.moving_first
-        self._reserve(loaded, len(palettes), height, skinned)
+        self._reserve(loaded, len(palettes), height, skinned, only is None)
+        self.resting, self.hinges = None, palettes[:, scene.hinges]
         if not len(palettes):
             return
         moments, moved = len(palettes), (self.position, self.normal)
         if clusters or loaded.glass is not None:
             palette = self._backend.upload(palettes.astype(np.float32))
             rest = (a["rest"], a["rest_normals"], a["joints"], a["weights"])
-            self._geometry.skin(palette, *rest, skinned, moments, *moved)
+            vertices = np.arange(skinned, dtype=np.int32) if only is None else only
+            self._geometry.skin(palette, *rest, self._backend.upload(vertices), moments, *moved)
         if not clusters:
             return
         still = loaded.static_vertices
         places = (scene.moving_first, still, moments, self.position, self.ball)
         self._geometry.bound(a["faces"], a["clusters"], wanted, *places)
+        self.resting = self._rest(loaded, palettes) if only is None else None
         if self.size > 1:
             self._cast(loaded, moments, skinned)
-        if self._style.occlusion:
+        if self._style.occlusion and only is None:
             spare = self._buffer("spare", (moments * loaded.rows * loaded.columns,), np.float32)
             floor = (a["floor"], a["tops"], loaded.columns, loaded.rows, spare, self.ground)
             crew = self._backend.crew(moments)
             self._contact.touch(self.position, a["area"], a["solid"], moments, *floor, *crew)
 
-    def _reserve(self, loaded: Loaded, palettes: int, height: int, skinned: int) -> None:
-        """Buffers, and the moment in which nobody is there."""
+    def _rest(self, loaded: Loaded, palettes: NDArray[np.float32]) -> Any:
+        """In the moment in which nobody is there, parts of the set that move, as they are in the first one.
+
+        Returns which clusters these are, int32 [C]; None where there are none, and but on the host.
+        """
+        scene, a = loaded.scene, loaded.arrays
+        if not self._backend.on_host or not len(scene.leaves):
+            return None
+        wanted = np.zeros(len(scene.clusters), np.int32)
+        wanted[scene.moving_first : scene.loose_first] = 1
+        here = slice(len(palettes), len(palettes) + 1)
+        rest = (a["rest"], a["rest_normals"], a["joints"], a["weights"], scene.leaves, 1)
+        first = np.ascontiguousarray(palettes[:1], np.float32)
+        self._geometry.skin(first, *rest, self.position[here], self.normal[here])
+        places = (scene.moving_first, loaded.static_vertices, 1, self.position[here], self.ball[here])
+        self._geometry.bound(a["faces"], a["clusters"], wanted, *places)
+        return wanted
+
+    def _reserve(self, loaded: Loaded, palettes: int, height: int, skinned: int, lit: bool) -> None:
+        """Buffers, and the moment in which nobody is there. lit: whether with shadow maps"""
         scene = loaded.scene
         moments, vertices = max(palettes, 1), max(skinned, 1)
         clusters = len(scene.clusters) - scene.moving_first
-        self.position = self._buffer("position", (moments, vertices, 3), np.float32)
-        self.normal = self._buffer("normal", (moments, vertices, 3), np.float32)
-        self.ball = self._buffer("ball", (moments, max(clusters, 1), 4), np.float32)
+        self.position = self._buffer("position", (moments + 1, vertices, 3), np.float32)
+        self.normal = self._buffer("normal", (moments + 1, vertices, 3), np.float32)
+        self.ball = self._buffer("ball", (moments + 1, max(clusters, 1), 4), np.float32)
         texels = SHADOW if height > LARGE else SHADOW // 2
-        self.size = texels if len(scene.casters) and palettes and self._style.shadows else 1
+        self.size = texels if len(scene.casters) and palettes and self._style.shadows and lit else 1
         self.count = moments
         self.frame = self._buffer("frame", (moments + 1, 3), np.float32)
         self.depth = self._buffer("depth", (moments * self.size**2,), np.float32)

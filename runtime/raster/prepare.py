@@ -41,7 +41,10 @@ class Prepared:
     faces: int32 [F, 3] into both one after the other; color: float32 [F, 3] linear
     info: int32 [F, 3]: surface index, material | flags << SHIFT, wall or -1; people and the levels of
     detailed bodies are walls too, after those of the set
-    clusters: int32 [C, 4]: first triangle, count, cull, wall; moving_first: index of the first skinned one
+    clusters: int32 [C, 4]: first triangle, count, cull, wall; moving_first: index of the first skinned one;
+    loose_first: of the first of these that is no part of the set, as a door's leaf is
+    leaves: int32, skinned vertices of the parts of the set that move; hinges: int32, palette entries that
+    move them
     sphere: float32 [C, 4], bounds of the static ones
     surface_object: int32 [S]: object id of each surface, a surface being one part of one object
     one_color: int32 [S], 1 where all faces of a surface have one colour
@@ -61,6 +64,9 @@ class Prepared:
     info: NDArray[np.int32]
     clusters: NDArray[np.int32]
     moving_first: int
+    loose_first: int
+    leaves: NDArray[np.int32]
+    hinges: NDArray[np.int32]
     sphere: NDArray[np.float32]
     surface_object: NDArray[np.int32]
     one_color: NDArray[np.int32]
@@ -139,13 +145,18 @@ def closed_faces(mesh: Mesh, object_ids: NDArray[np.int32]) -> NDArray[np.bool_]
 
 
 def _clusters(
-    mesh: Mesh, object_ids: NDArray[np.int32], wall: NDArray[np.int32], cull: NDArray[np.bool_]
+    mesh: Mesh,
+    object_ids: NDArray[np.int32],
+    wall: NDArray[np.int32],
+    cull: NDArray[np.bool_],
+    later: NDArray[np.bool_] | None = None,
 ) -> tuple[NDArray[np.int64], NDArray[np.int32]]:
-    """Order of the faces, and clusters [C, 4] over that order."""
+    """Order of the faces, and clusters [C, 4] over that order; later: [F], faces that come after others."""
     if not len(mesh.faces):
         return np.zeros(0, np.int64), np.zeros((0, 4), np.int32)
-    order = np.lexsort((np.arange(len(wall)), object_ids, cull, wall))
-    key = np.stack([wall, object_ids, cull], axis=1)[order]
+    after = np.zeros(len(wall), np.bool_) if later is None else later
+    order = np.lexsort((np.arange(len(wall)), object_ids, cull, wall, after))
+    key = np.stack([wall, object_ids, cull, after], axis=1)[order]
     change = np.flatnonzero((key[1:] != key[:-1]).any(axis=1)) + 1
     begins = np.concatenate([[0], change, [len(order)]])
     rows = [
@@ -208,9 +219,14 @@ def prepare(scene: RenderScene, style: Style) -> Prepared:
     level_wall = after + detail.body * COUNT + detail.level
     own_wall = np.where(detail.body >= 0, level_wall, own_wall).astype(np.int32)
     casting = (detail.body < 0) | (detail.level == CASTING)
-    moving_order, moving_clusters = _clusters(scene.skinned, scene.skinned_object, own_wall, moving_cull)
+    loose = fitting <= LOOSE
+    moving_order, moving_clusters = _clusters(
+        scene.skinned, scene.skinned_object, own_wall, moving_cull, loose
+    )
+    leaves = np.unique(scene.skinned.faces[~loose])
     fitting, own_wall = fitting[moving_order], own_wall[moving_order]
     skinned = _ordered(scene.skinned, moving_order)
+    loose_first = len(clusters) + int((~loose[moving_order][moving_clusters[:, 0]]).sum())
     moving_clusters = moving_clusters.copy()
     moving_clusters[:, 0] += len(order)
 
@@ -244,6 +260,9 @@ def prepare(scene: RenderScene, style: Style) -> Prepared:
         info=np.stack([surface.reshape(-1), materials | (flags << SHIFT), wall], axis=1).astype(np.int32),
         clusters=np.concatenate([clusters, moving_clusters]).astype(np.int32),
         moving_first=len(clusters),
+        loose_first=loose_first,
+        leaves=leaves.astype(np.int32),
+        hinges=np.unique(scene.joints[leaves][scene.weights[leaves] > 0]).astype(np.int32),
         sphere=spheres(static.vertices, static.faces, clusters),
         surface_object=surfaces[:, 1].astype(np.int32),
         one_color=_one_color(color, surface.reshape(-1), len(surfaces)),

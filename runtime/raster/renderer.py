@@ -113,7 +113,8 @@ class Renderer:
                     moved = slice(begin, count) if every else part
                     used, inverse = np.unique(moment[moved], return_inverse=True)
                     local = inverse.reshape(-1).astype(np.int32)
-                    self._move(content, palettes[used] if len(palettes) else palettes, height, hidden[moved])
+                    some = palettes[used] if len(palettes) else palettes
+                    self._move(content, some, height, hidden[moved], pictures)
                 self._draw(
                     view[part],
                     local[begin - moved.start : part.stop - moved.start],
@@ -184,16 +185,27 @@ class Renderer:
         return have
 
     def _move(
-        self, content: Loaded, palettes: NDArray[np.float32], height: int, hidden: NDArray[np.int32]
+        self,
+        content: Loaded,
+        palettes: NDArray[np.float32],
+        height: int,
+        hidden: NDArray[np.int32],
+        pictures: bool,
     ) -> None:
-        """Make ``palettes`` the moments that are drawn."""
+        """Make ``palettes`` the moments that are drawn; of what is not shaded, or plainly, nothing else."""
         scene, moments = content.scene, self._moments
         wall = scene.clusters[:, 3]
         shown = (wall < 0) | (hidden == 0).any(axis=0)[wall]
         wanted = self.backend.upload(shown.astype(np.int32))
-        moments.move(content, palettes, height, wanted, skinned(content, hidden))
+        only = None
+        if self._plain is not None or not pictures:
+            levels = slice(content.walls + content.people, hidden.shape[1] - 1)
+            shown = (hidden[:, levels] == 0).any(axis=0).reshape(-1, COUNT)
+            only = scene.detail.used(shown)
+        moments.move(content, palettes, height, wanted, skinned(content, hidden), only)
         clusters = len(scene.clusters) - scene.moving_first
-        self._visibility.move(moments.position, moments.ball, wanted, moments.count if clusters else 0)
+        some = moments.count if clusters else 0
+        self._visibility.move(moments.position, moments.ball, wanted, some, moments.resting)
         if self._glazing is not None:
             self._glazing.move(moments)
 
@@ -217,7 +229,7 @@ class Renderer:
         empty = np.full(views, -1, np.int32)
         shaded = color.size > 0
         if shaded and self.serial and self._plain is None and size[0] % passes.run == 0:
-            empty = self._empty.drawn_for(content, moments, glazing, view, hidden, size)
+            empty = self._empty.drawn_for(content, moments, glazing, (view, moment, hidden), size)
         self._visibility.fill(view_, moment_, hidden_, layer.vis, size, empty, self.serial)
         if not shaded:
             if objects is not None:

@@ -33,6 +33,8 @@ class Triangles(Protocol):
     @property
     def moving_first(self) -> int: ...
     @property
+    def loose_first(self) -> int: ...
+    @property
     def most_drawn(self) -> int: ...
 
 
@@ -48,6 +50,7 @@ class Visibility:
         self._backend = backend
         self._buffer: Buffers = lambda of, shape, dtype: buffer(name + of, shape, dtype)
         self._geometry = geometry
+        self._drawn = np.zeros(0, np.int32)  # clusters of each remembered view, up to which they are drawn
         if backend.on_host:
             from .kernels import gather, spans
 
@@ -60,36 +63,51 @@ class Visibility:
         if self._backend.on_host:
             vertices = arrays["vertices"].reshape(1, -1, 3)
             wanted = np.ones(len(scene.clusters) + 1, np.int32)
-            self._still = self._arranged("still", wanted, (0, scene.moving_first), 0, 1, vertices)
+            count = scene.moving_first
+            self._still = self._buffer("still", (max(count, 1) * self._each,), np.float32)
+            self._arrange(self._still, wanted, (0, count), 0, 1, vertices)
 
-    def move(self, position: Any, ball: Any, wanted: Any, moments: int) -> None:
+    def move(self, position: Any, ball: Any, wanted: Any, moments: int, resting: Any = None) -> None:
         """Take over the skinned vertices [M, V, 3] and the bounds of the moving clusters [M, C, 4].
 
-        wanted: int32 [C], 1 where some view may show a cluster
+        wanted: int32 [C], 1 where some view may show a cluster; resting: the same of one moment more, the
+        last one, in which nobody is there; None without it
         """
         self._position, self._ball = position, ball
         scene = self._scene
         if self._backend.on_host:
             part = (scene.moving_first, len(scene.clusters) - scene.moving_first)
-            self._moving = self._arranged("moving", wanted, part, len(scene.vertices), moments, position)
+            each = part[1] * self._each
+            self._moving = self._buffer("moving", ((moments + 1) * max(each, self._each),), np.float32)
+            offset = len(scene.vertices)
+            self._arrange(self._moving, wanted, part, offset, moments, position)
+            if resting is not None:
+                last = (self._moving[moments * each :], resting, part, offset, 1, position[moments:])
+                self._arrange(*last)
 
-    def _arranged(
-        self, name: str, wanted: Any, part: tuple[int, int], offset: int, moments: int, vertices: Any
-    ) -> Any:
+    @property
+    def _each(self) -> int:
+        """Numbers of the corners of a cluster as they are arranged."""
+        return int(self._kernels.GROUPS * self._kernels.CORNERS * self._kernels.LANES)
+
+    def _arrange(
+        self, out: Any, wanted: Any, part: tuple[int, int], offset: int, moments: int, vertices: Any
+    ) -> None:
         """Corners of clusters (first, count), for vectors: [M, count, GROUPS, CORNERS, LANES], flat."""
-        kernels, a = self._kernels, self._arrays
-        first, count = part
-        each = kernels.GROUPS * kernels.CORNERS * kernels.LANES
-        out = self._buffer(name, (max(moments * count, 1) * each,), np.float32)
-        if moments * count:
-            kernels.arrange(a["faces"], a["clusters"], wanted, first, count, offset, moments, vertices, out)
-        return out
+        if moments * part[1]:
+            a = self._arrays
+            self._kernels.arrange(a["faces"], a["clusters"], wanted, *part, offset, moments, vertices, out)
 
     def fill_empty(
-        self, view: Any, moment: Any, hidden: Any, vis: Any, size: tuple[int, int], views: int
+        self, view: Any, moment: Any, hidden: Any, vis: Any, size: tuple[int, int], leaves: NDArray[np.bool_]
     ) -> None:
-        """Fill the visibility buffers of ``views`` views of the set alone, and remember them. Host only."""
-        part = np.tile(np.array([0, self._scene.moving_first], np.int32), (views, 1))
+        """Fill the visibility buffers of views of the set alone, and remember them. Host only.
+
+        leaves: [N], with which of them also its parts that move are drawn, as they rest
+        """
+        scene = self._scene
+        self._drawn = np.where(leaves, scene.loose_first, scene.moving_first).astype(np.int32)
+        part = np.stack([np.zeros_like(self._drawn), self._drawn], axis=1)
         self._fill_bands(view, moment, hidden, vis, size, part, None)
 
     def fill(
@@ -113,7 +131,7 @@ class Visibility:
         if serial:
             last = len(self._scene.clusters) if movers else self._scene.moving_first
             part = np.tile(np.array([0, last], np.int32), (views, 1))
-            part[empty >= 0, 0] = self._scene.moving_first
+            part[empty >= 0, 0] = self._drawn[empty[empty >= 0]]
             self._fill_bands(view, moment, hidden, vis, size, part, empty)
             return
         scene, a = self._scene, self._arrays

@@ -136,3 +136,48 @@ def test_glass_is_taken_over_too_and_drawn_anew_where_it_moves(monkeypatch: pyte
     assert redrawn(drawer, 4, size) < 0.25
     with_ids = drawn(drawer, views, size, ids=True)
     assert (with_ids.color == expected.color).all()
+
+
+def with_a_door() -> RenderScene:
+    """A floor with two balls, and a door beside them that is a part of the set: it is in its first wall."""
+    balls = [
+        sphere((0, 0, 0.3), (0.3, 0.3, 0.3), (0.8, 0.2, 0.2)),
+        sphere((0.8, 0, 0.2), (0.2, 0.2, 0.2), (0.2, 0.2, 0.8)),
+    ]
+    leaf = box((-2.6, -0.5, 0), (-1.4, -0.4, 1.8), (0.6, 0.5, 0.4), "wood")
+    floor = box((-6, -6, -0.1), (6, 6, 0), (0.7, 0.7, 0.7), "wood")
+    content = scene([floor], [*balls, leaf])
+    fitting = np.where(content.skinned_object == 3, 0, -2).astype(np.int32)
+    return replace(content, fitting=fitting, wall_count=1)
+
+
+@pytest.mark.parametrize("opens", [False, True])
+@pytest.mark.parametrize("style", ["board", "ink"])
+def test_a_door_that_rests_belongs_to_the_empty_set(
+    monkeypatch: pytest.MonkeyPatch, style: str, opens: bool
+) -> None:
+    drawer, size = Renderer("cpu", STYLES[style]), (640, 360)
+    eyes, aims = [(0, -6, 2.5)] * 4, [(-0.5, 0, 0.6)] * 4
+    views = looking(eyes, aims, moments=[0, 1, 2, 3], walls=1)
+    drawer.load(with_a_door())
+    moments = np.concatenate([walking(4), still(1, 4)], axis=1)
+    if opens:
+        moments[2:, 2, 0, 3] = 0.2
+
+    def drawn_anew() -> Frames:
+        with monkeypatch.context() as patch:
+            patch.setattr(module, "REUSED", 10**9)
+            return drawer.render(moments, views, size, ids=True)
+
+    expected = drawn_anew()
+    got = drawer.render(moments, views, size)
+    assert expected.ids is not None
+    door = (expected.ids == 3).any(axis=0)
+    assert door.mean() > 0.03
+    assert (got.color == expected.color).all()
+    level = drawer._buffers["level"][: 4 * size[0] * size[1] // 16].reshape(4, size[1], -1)
+    shaded = np.repeat(level == 3, 16, axis=-1)[:, door].mean()
+    assert shaded > 0.9 if opens else shaded < 0.2
+    moments[:, 2, 0, 3] = 0.1  # the same door at another place, as in a later part of a take
+    expected = drawn_anew()
+    assert (drawer.render(moments, views, size).color == expected.color).all()

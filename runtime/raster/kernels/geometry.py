@@ -73,15 +73,16 @@ def skin(
     rest_normal: f2,
     joints: i2,
     weights: f2,
-    count: ti.i32,
+    vertices: i1,
     moments: ti.i32,
     position: f3,
     normal: f3,
 ):
-    """Linear blend skinning of the first ``count`` vertices in the first ``moments`` palettes."""
+    """Linear blend skinning of some vertices in the first ``moments`` palettes."""
+    count = vertices.shape[0]
     for i in range(moments * count):
         m = i // count
-        v = i % count
+        v = vertices[i % count]
         p = row3(rest, v)
         q = row3(rest_normal, v)
         out = vec3(0)

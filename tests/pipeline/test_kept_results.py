@@ -198,6 +198,27 @@ def test_a_chosen_take_is_shown_first_even_one_that_was_not_kept(project: Path) 
     assert lock_path(project / "story.vds").read_text("utf-8") == lock
 
 
+@pytest.mark.parametrize("named", [False, True])
+def test_a_choice_is_the_same_take_or_none_where_the_scene_is_renamed(project: Path, named: bool) -> None:
+    """What is proposed goes by the scene's name: never is another take shown as the chosen one."""
+    text = SCRIPT
+    if named:
+        text = text.replace("(static medium eye-level) 0.5s", "(static medium eye-level) 0.5s, name hello", 1)
+    first, _ = made(project, text)
+    shot = first.build.shots[0]
+    choose(project / "story.vds", shot.shot.id, 2, project / "build")
+    wanted = shot.takes[1]
+    again, _ = made(project, text.replace("scene room", "scene chamber"))
+    best = again.build.shots[0].takes[0]
+    lost = "VDS311" in {d.code for d in again.warnings.diagnostics}
+    assert best.chosen != lost
+    if not named:
+        assert best.chosen
+    if best.chosen:
+        assert best.key == wanted.key
+        assert np.allclose(best.camera.track.position, wanted.camera.track.position)
+
+
 def test_a_seed_is_pinned_by_the_lock(project: Path) -> None:
     seeded, _ = made(project, f"seed 9\n{SCRIPT}")
     choose(project / "story.vds", "room-anna-wave", 2, project / "build")

@@ -109,6 +109,27 @@ def _list(lock: Lock, file: Path, as_json: bool) -> None:
     if not lock.choices:
         write_line("nothing is chosen; `vdsc pick FILE SHOT TAKE` chooses", sys.stdout)
         return
-    wide = max(len(c.shot) for c in lock.choices)
+    wide, lost = max(len(c.shot) for c in lock.choices), _lost(lock, file)
     for c in lock.choices:
-        write_line(printable(f"{c.shot:<{wide}}  {c.key:<13}  {c.words}"), sys.stdout)
+        write_line(printable(f"{c.shot:<{wide}}  {c.key:<13}  {c.words}{lost.get(c.shot, '')}"), sys.stdout)
+
+
+def _lost(lock: Lock, file: Path) -> dict[str, str]:
+    """What to say of choices, by their shots' ids, that the script as it is now has no shot or line for."""
+    from ..pipeline.depends import shot_digests
+    from ..pipeline.placing import placed
+    from ..pipeline.script import ScriptError, load_storyboard
+
+    try:
+        checked = load_storyboard(file)
+    except (ScriptError, OSError, MemoryError):
+        return {}  # of a script that does not read nothing is known
+    depends = shot_digests(checked.storyboard, checked.catalog)
+    now = {choice.shot: shot for shot, choice in placed(lock.choices, depends).items()}
+    said = {}
+    for choice in lock.choices:
+        if choice.shot not in now:
+            said[choice.shot] = "  (there is no such shot any more)"
+        elif depends[now[choice.shot]] != choice.depends:
+            said[choice.shot] = "  (its line has changed since)"
+    return said

@@ -26,7 +26,7 @@ LIBRARY = Path(__file__).parent
 FOLDERS = {"set": "sets", "prop": "props", "cast": "cast", "action": "actions"}
 
 #: What models in several files consist of besides.
-_BESIDE = frozenset({".bin", ".mtl", ".png", ".jpg", ".jpeg", ".webp"})
+BESIDE = frozenset({".bin", ".mtl", ".png", ".jpg", ".jpeg", ".webp"})
 _NAME = re.compile(r"[^\W\d][\w-]*")
 _HEAD = re.compile(r"^[ \t\ufeff]*(set|prop|cast|action)[ \t]+([^\W\d][\w-]*)", re.MULTILINE)
 
@@ -221,7 +221,7 @@ def _file_digest(path: Path) -> str:
     try:
         told.update(path.read_bytes())
         if path.suffix.lower() in (".gltf", ".obj"):
-            for other in sorted(p for p in path.parent.rglob("*") if p.suffix.lower() in _BESIDE):
+            for other in sorted(p for p in path.parent.rglob("*") if p.suffix.lower() in BESIDE):
                 about = other.stat()
                 told.update(f"\0{other.name} {about.st_size} {about.st_mtime_ns}".encode("utf-8", "replace"))
     except OSError as error:

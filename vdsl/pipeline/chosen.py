@@ -52,11 +52,14 @@ def keys_of(grid: ProposalGrid) -> list[str]:
     return [proposal_key(c, stories[c.story]) for c in grid.cameras]
 
 
-def find_again(choice: Choice, grid: ProposalGrid) -> int | None:
-    """The same in a grid that was proposed as the choice's was, from a line that is as it was: there another
-    machine's last digits are no other take."""
+def find_again(choice: Choice, grid: ProposalGrid, surely: bool) -> int | None:
+    """The same in a grid that was proposed as the choice's was, from a line that is as it was.
+
+    surely: whether the grid was drawn under the name it was drawn under then: only so another machine's last
+    digits are no other take, and the number and the words are enough
+    """
     found = find(choice, keys_of(grid))
-    if found is not None:
+    if found is not None or not surely:
         return found
     number = choice.key.partition("-")[0]
     for i, camera in enumerate(grid.cameras):

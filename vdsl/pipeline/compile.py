@@ -323,11 +323,15 @@ class _Filming:
     def _proposed_again(
         self, crew: Shooting, line: StoryLine, shot: Shot, choice: Choice
     ) -> tuple[Shooting, Kept] | None:
-        """A choice among as many proposals, with the seed and under the id, as when it was chosen."""
+        """A choice among as many proposals, with the seed and under the id, as when it was chosen.
+
+        What it was drawn under then is certain where the shot has the same id and no name of its own.
+        """
+        surely = shot.id == choice.shot and not shot.drawn
         other = crew if choice.seed == self.run.storyboard.seed else Shooting(crew.run, choice.seed)
         for drawn in dict.fromkeys((shot.drawn_as, choice.shot)):
             as_chosen = replace(shot, proposals=choice.proposals, drawn=drawn)
-            kept = other.one(line, as_chosen, choice.key, lambda grid: find_again(choice, grid))
+            kept = other.one(line, as_chosen, choice.key, lambda grid: find_again(choice, grid, surely))
             if kept is not None:
                 return other, kept
         return None

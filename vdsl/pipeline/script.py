@@ -15,7 +15,9 @@ class ScriptError(Exception):
     def __init__(self, report: Report) -> None:
         self.report = report
         count = len(report.errors)
-        super().__init__(f"{count} error{'s' if count != 1 else ''} in the script")
+        files = {Path(d.span.source.name).name for d in report.errors}
+        where = files.pop() if len(files) == 1 else "the script"
+        super().__init__(f"{count} error{'s' if count != 1 else ''} in {where}")
 
     @property
     def diagnostics(self) -> tuple[Diagnostic, ...]:

@@ -20,10 +20,12 @@ from watchfiles import Change
 from watchfiles import watch as changes_in
 
 from ranker.errors import RankerError
+from runtime.formats.outline import FIGURES, MODELS, MOTIONS
 from runtime.raster.device import DeviceError
 
 from ..emit.folder import write_text
 from ..lang import Report
+from ..library.loader import BESIDE
 from .compile import Result, Workshop, compile_file, prepare
 from .findings import finding
 from .lock import lock_path
@@ -31,11 +33,14 @@ from .options import Options
 from .progress import Progress, Silence
 from .project import NAME as PROJECT
 from .script import ScriptError, load_storyboard
+from .tasting import NAME as TASTE
 
 SCHEMA = "vds.status/1"
 STATUS = "status.json"
 #: Milliseconds of quiet after a change, and the longest that changes are waited for.
 _STEP, _DEBOUNCE = 40, 300
+#: Kinds of files that a script may draw on: others beside it, models and motions, and what these consist of.
+_DRAWN_ON = frozenset({".vds", *MODELS, *FIGURES, *MOTIONS, *BESIDE})
 
 
 @dataclass(frozen=True, eq=False)
@@ -133,7 +138,9 @@ class _Loop:
                 self._made(options)
         except ScriptError as error:
             self._wrong(str(error), error.report)
-        except (RankerError, DeviceError, OSError, MemoryError) as error:
+        except OSError as error:
+            self._wrong(f"{error.filename}: {error.strerror}" if error.filename else str(error))
+        except (RankerError, DeviceError, MemoryError) as error:
             self._wrong(str(error) or type(error).__name__)
 
     def _made(self, options: Options) -> Result:
@@ -280,13 +287,14 @@ class _Ears:
             self._saved.set()
 
     def _matters(self, change: Change, path: str) -> bool:
-        """The script, its lock, the project's settings, and whatever else it may draw on."""
+        """The script, its lock, the project's settings and taste, and what a script may draw on: nothing that
+        somebody else keeps writing there, as a log."""
         name = Path(path).name
         if Path(path) == self._build or Path(path).is_dir():  # a build put in its place beside the script
             return False
-        if name.endswith(".lock"):
-            return name == lock_path(self._file).name
-        return not name.startswith(".") and not name.endswith(("~", ".part", ".swp", ".tmp"))
+        if name in (self._file.name, lock_path(self._file).name, PROJECT, TASTE):
+            return True
+        return not name.startswith(".") and Path(name).suffix.lower() in _DRAWN_ON
 
     def _deaf(self) -> None:
         self._enough.set()

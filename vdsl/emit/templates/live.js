@@ -1,3 +1,13 @@
+// What was chosen and is there no more (vdsc explain VDS311).
+const LOST = ["VDS311", "VDS312"];
+const nameOf = (path) => (path || "").split("/").pop();
+
+/** Where something is wrong: the file is named where it is not the script. */
+function placeOf(one) {
+  const file = nameOf(one.file);
+  return `${one.severity}, ${file && file !== nameOf(board.source) ? `${file}, ` : ""}line ${one.line}`;
+}
+
 // Served by `vdsc serve`: choosing, and going along with what is compiled. From disk nothing of this runs.
 const live = {
   token: document.querySelector('meta[name="vds-token"]').content,
@@ -71,14 +81,15 @@ const live = {
     const words = wrong ? message || "The script has errors; this is the last good build."
       : state === "draft" || state === "firsts" ? message || "Drafting…" : state === "building" ? message || "Compiling…"
       : stale ? "The script has changed since this build." : "";
-    const text = JSON.stringify([words, wrong && diagnostics]);
+    const lost = diagnostics.filter((one) => LOST.includes(one.code));
+    const found = wrong ? diagnostics : lost;
+    const text = JSON.stringify([words, found]);
     if (box.dataset.text === text) return;
     box.dataset.text = text;
-    box.hidden = !words;
+    box.hidden = !words && !found.length;
     box.classList.toggle("wrong", wrong);
-    const found = wrong ? diagnostics : [];
     box.replaceChildren(make("p", {}, words), make("ul", {}, ...found.map((one) => make("li", {},
-      make("p", {}, make("span", { class: "where" }, `${one.severity}, line ${one.line}`), ` ${one.title || ""}`),
+      make("p", {}, make("span", { class: "where" }, placeOf(one)), ` ${one.title || ""}`),
       make("p", {}, one.message || "", one.suggestion ? `; did you mean \`${one.suggestion}\`?` : ""), one.help ? make("p", { class: "soft small" }, one.help) : ""))));
   },
 
@@ -86,7 +97,7 @@ const live = {
   again() {
     const seen = panels.find((panel) => panel.getBoundingClientRect().bottom > 80);
     sessionStorage.setItem("vds.back", JSON.stringify({
-      y: scrollY, seen: seen?.dataset.shot, top: seen?.getBoundingClientRect().top, shot: viewer.isOpen ? viewer.shot.id : null, take: viewer.take?.rank, frame: viewer.isOpen ? viewer.frame : 0,
+      y: scrollY, seen: seen?.dataset.shot, top: seen?.getBoundingClientRect().top, shot: viewer.isOpen ? viewer.shot.id : null, take: viewer.take?.key, said: by("pick-said").textContent, frame: viewer.isOpen ? viewer.frame : 0,
       playing: viewer.isOpen && !viewer.video.paused,
       filters: [...new FormData(filters)], at: at?.dataset.shot, film: film && !film.paused ? null : film?.currentTime,
       open: panels.filter((panel) => !panel.querySelector(".rest")).map((panel) => panel.dataset.shot),
@@ -111,7 +122,10 @@ const live = {
     if (film && kept.film) film.currentTime = kept.film;
     const shot = shots.get(kept.shot);
     if (!shot) return;
-    viewer.open(shot, shot.takes.find((t) => t.rank === kept.take), kept.playing);
+    // takes change places where one is chosen: what was open is known by its key
+    const take = shot.takes.find((t) => t.key === kept.take);
+    viewer.open(shot, take, kept.playing);
+    if (take) by("pick-said").textContent = take.chosen && kept.said ? "This take is in the film." : kept.said;
     if (!kept.playing) viewer.video.addEventListener("loadedmetadata", () => viewer.seek(kept.frame), { once: true });
   },
 };

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from typing import Any
 
 import page_build
@@ -42,6 +43,62 @@ def test_the_page_loads_a_new_build_and_stays_where_it_was(server: Place, visit:
         assert page.locator("[name=words]").input_value() == "anna"
     finally:
         write_build(server.build, page_build.film(server.build))
+
+
+def test_the_take_that_is_open_stays_open_where_it_becomes_the_first(
+    server: Place, visit: Callable[..., Any]
+) -> None:
+    """As it does, a moment after it was chosen, where somebody watches the script."""
+    page = visit(server.url)
+    opened(page, "s3")
+    page.keyboard.press("3")
+    key = page.evaluate("viewer.take.key")
+    build = page_build.film(server.build, title="Chosen")
+    shot = build.shots[-1]
+    best = replace(shot.takes[2], media=replace(shot.takes[2].media, keys=shot.takes[0].media.keys))
+    takes = [best, *shot.takes[:2], *shot.takes[3:]]
+    ranked = tuple(replace(take, rank=k, chosen=k == 1) for k, take in enumerate(takes, start=1))
+    try:
+        write_build(server.build, replace(build, shots=(*build.shots[:-1], replace(shot, takes=ranked))))
+        until(page, "document.title === 'Chosen'", 15)
+        page.wait_for_selector("#viewer[open]")
+        assert page.evaluate("viewer.take.key") == key
+        assert "take 1 of 7" in page.locator("#viewer-rank").inner_text()
+    finally:
+        write_build(server.build, page_build.film(server.build))
+
+
+def test_lost_choices_are_told_and_other_files_named(server: Place, visit: Callable[..., Any]) -> None:
+    page = visit(server.url)
+    lost = {
+        "code": "VDS311",
+        "severity": "warning",
+        "file": "story.vds",
+        "line": 7,
+        "title": "a choice is lost",
+        "message": "the chosen take (push medium) no longer exists",
+    }
+    weak = lost | {"code": "VDS192", "title": "no good take"}
+    status = {"schema": "vds.status/1", "state": "done", "message": "", "diagnostics": [lost, weak]}
+    status["process"] = os.getpid()
+    path = server.build / "status.json"
+    try:
+        path.write_text(json.dumps(status))
+        until(page, "document.getElementById('told').textContent.includes('line 7')")
+        told = page.locator("#told").inner_text()
+        assert "warning, line 7" in told
+        assert "no longer exists" in told
+        assert "no good take" not in told
+        wrong = lost | {
+            "severity": "error",
+            "file": "film/story.vds.lock",
+            "message": "this lock does not read",
+        }
+        path.write_text(json.dumps(status | {"state": "error", "message": "1 error", "diagnostics": [wrong]}))
+        page.wait_for_selector("#told.wrong")
+        assert "error, story.vds.lock, line 7" in page.locator("#told").inner_text()
+    finally:
+        path.unlink()
 
 
 def test_errors_are_shown_while_the_last_build_stays(server: Place, visit: Callable[..., Any]) -> None:

@@ -96,6 +96,8 @@ RULES: tuple[Rule, ...] = (
     # options
     Rule("(anna walk) lens = 50mm", "=", _STORY, r"\)[^(]*?(=)", "no `=` in options", "as in `lens 50mm`", ""),
     Rule("(anna walk) lens 50mm,", ",", _STORY, r"(,)\s*$", "an option is missing after the comma", "or leave the comma out", ""),
+    Rule('(anna wave) 4s say "Hello."', "say", _STORY, r"\)[^()]*[^\s(),]\s+(say|note|lens|ease|roll|focus|speed|style|proposals|takes|name)\s+\S",
+         "a comma is missing before this", 'options are set apart, as in `4s, say "Hello."`', r", \1"),
     Rule("(anna walk) lens 50mm,, 4s", ",", _STORY, r",\s*(,)", "one comma is enough", "remove it", ""),
     Rule("(anna walk) lens (50mm)", "(", _STORY, rf"\)\s*(?:{_N}[^(/+]*)?{_N}\s+(\()", "options have no parentheses", "as in `lens 50mm`"),
     # headers

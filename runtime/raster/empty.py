@@ -1,7 +1,7 @@
 """The empty sets of cameras that stand still: drawn once, and taken over where nothing has changed.
 
-An empty set is a view without anything that moves. For the host, and for rows of whole runs. Guarantees the
-same bytes as views that are drawn anew.
+An empty set is a view without anything that moves, but for doors and the like that rest. For the host, and
+for rows of whole runs. Guarantees the same bytes as views that are drawn anew.
 """
 
 from __future__ import annotations

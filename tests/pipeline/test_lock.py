@@ -12,6 +12,7 @@ from vdsl.cli import app
 from vdsl.pipeline.depends import shot_digests
 from vdsl.pipeline.lock import Choice, ChoiceError, Lock, choose, clear, lock_path, read_lock, write_lock
 from vdsl.pipeline.placing import placed
+from vdsl.pipeline.project import project_of
 from vdsl.pipeline.script import ScriptError, load_storyboard
 
 CUP = Choice("kitchen-anna-pour-cup", "17-3f9a2c1b", "push medium high-angle", 80, 0, "9c41d2e07a55")
@@ -251,3 +252,22 @@ def test_the_command_lists_chooses_and_takes_back(script: Path) -> None:
         assert run(app, ["pick", str(script), *wrong, *at]).exit_code == 2, wrong
     assert run(app, ["pick", str(script), "--clear"]).exit_code == 0
     assert not lock_path(script).exists()
+
+
+def test_choices_whose_line_or_shot_is_lost_are_listed_as_such(script: Path) -> None:
+    def listed() -> str:
+        return CliRunner().invoke(app, ["pick", str(script)]).output
+
+    (script.parent / "vds.toml").write_text('style = "clay"\nrig = "paper"\n')
+    checked = load_storyboard(script, None, project_of(script).settings)
+    depends = shot_digests(checked.storyboard, checked.catalog)
+    held = tuple(Choice(shot, "1-00000000", "x", 8, 0, text) for shot, text in depends.items())
+    write_lock(lock_path(script), Lock(0, (), held))
+    assert listed().count("\n") == 2
+    assert "(" not in listed()
+    script.write_text(script.read_text().replace("(static medium)", "(static full)"))
+    assert listed().count("its line has changed since") == 1
+    script.write_text(script.read_text().replace("(anna wave) / (static full)\n", ""))
+    assert listed().count("there is no such shot any more") == 1
+    script.write_text("(anna wlk\n")  # of what does not read nothing is said
+    assert "(" not in listed()

@@ -118,10 +118,11 @@ def _lost(lock: Lock, file: Path) -> dict[str, str]:
     """What to say of choices, by their shots' ids, that the script as it is now has no shot or line for."""
     from ..pipeline.depends import shot_digests
     from ..pipeline.placing import placed
+    from ..pipeline.project import project_of
     from ..pipeline.script import ScriptError, load_storyboard
 
     try:
-        checked = load_storyboard(file)
+        checked = load_storyboard(file, None, project_of(file).settings)
     except (ScriptError, OSError, MemoryError):
         return {}  # of a script that does not read nothing is known
     depends = shot_digests(checked.storyboard, checked.catalog)

@@ -10,6 +10,7 @@ NOTHING is the backdrop.
 
 import taichi as ti
 
+from ...materials import MATERIALS
 from ..film import FILM_RANGE, FILM_SIZE
 from .geometry import bounded, vec3
 
@@ -17,7 +18,8 @@ NOTHING = 0xFFFF0000
 RUN = 16  # pixels; rows are worked through in aligned runs of them
 #: Levels of a run: what is the first thing that is left to do in it (:mod:`.reuse`).
 SHADE, INK, SMOOTH, DONE = 3, 2, 1, 0
-GLASS, GLOW = 7, 8  # materials whose colours go by the place they are seen at, or by nothing at all
+#: Materials whose colours go by the place they are seen at, or by nothing at all.
+GLASS, GLOW = MATERIALS.index("glass"), MATERIALS.index("glow")
 SHEET = 16  # numbers kept for each side of a triangle of the set
 
 

@@ -14,7 +14,8 @@ from torch import Tensor
 from .guides import FARTHEST, MARKS, NEAREST, POINTS, SIDE
 
 _SHARP = 40.0  # how fast a point goes from in the frame to out of it, by half frames
-_CLEAR, _HARD = 0.35, 12.0  # what is nearer than a point by so much (log) covers it; how sharp that bound is
+_HARD = 12.0  # how sharp bounds of nearness (log) are
+_CLEAR, _STEEP = 0.25, 25.0  # metres nearer than a point from which something covers it; how sharp that is
 #: Means and deviations by which marks come near 0 and 1; the others are so of themselves.
 _COMMON = {"size": (3.2, 0.7), "lens": (3.8, 0.35), "distance": (0.7, 0.7), "seconds": (1.4, 0.6)}
 #: Places across the frame, half frames to the right and down, that are asked for what is much nearer than the
@@ -24,7 +25,7 @@ _NEARER = (0.3, math.log(2), 1.1)
 
 #: Numbers of :func:`composed` of a frame: marks, which points there are, composition, looks, and of each
 #: point whether it is covered, and whether it is in the frame.
-COMPOSED = len(MARKS) + len(POINTS) + 9 + len(_LOOKS) + len(_NEARER) + 2 * len(POINTS)
+COMPOSED = len(MARKS) + len(POINTS) + 10 + len(_LOOKS) + len(_NEARER) + 2 * len(POINTS)
 #: Which of them says whether the eyes are in the frame.
 EYES_INSIDE = COMPOSED - len(POINTS) + POINTS.index("eyes")
 #: Numbers that :func:`over_time` makes of each of a frame's.
@@ -47,13 +48,15 @@ def composed(told: Tensor, nearness: Tensor) -> Tensor:
     there = right.isfinite()
     right, up = right.nan_to_num(3.0), up.nan_to_num(3.0)
     inside = torch.sigmoid(_SHARP * (1 - right.abs())) * torch.sigmoid(_SHARP * (1 - up.abs())) * there
-    covered = torch.sigmoid(_HARD * (nearer.nan_to_num(-1.0) - _CLEAR)) * inside
+    ahead = (1 - (-nearer.nan_to_num(-1.0)).exp()) * marks["distance"].exp().unsqueeze(-1)  # metres
+    covered = torch.sigmoid(_STEEP * (ahead - _CLEAR)) * inside
     at = dict(zip(POINTS, up.unbind(-1), strict=True))
     sideways = right[..., POINTS.index("eyes")]
     composition = [
         -marks["right_face"] * sideways,  # room ahead of the face
         ((1 - at["eyes"]) / 2 - 1 / 3).abs(),  # off the upper third
         sideways.abs(),
+        (at["top"] - 1).clamp_min(0),
         (at["crown"] - 1).clamp_min(0),
         (at["chin"] - 1).clamp_min(0),
         (-1 - at["waist"]).clamp_min(0),

@@ -24,11 +24,13 @@ _APART = 3  # frames between those of the longer pairs
 NEAREST, FARTHEST = 0.25, 64.0  # metres that nearness of 255 and of 1 stand for
 #: Points that marks are of: the subject's, and two of what else matters, as who is spoken to.
 POINTS = (
+    "top",
     "crown",
     "eyes",
     "chin",
     "pocket",
     "waist",
+    "thigh",
     "knees",
     "feet",
     "hand_l",
@@ -37,10 +39,11 @@ POINTS = (
     "other_2",
 )
 #: Marks of a frame. Of each point how far it is to the right and to the top, in half frames from the middle,
-#: no further than 3, and by how much nearer than the point (log) what is seen in its place is. Where the
-#: face points, to the right, up and away. Logarithms: of the focal length (mm) by the distance of the waist,
-#: of that distance (metres) and of the focal length. Metres of the camera above the eyes; radians it leans to
-#: the right; the logarithm of the seconds the shot lasts. In the mirror those of ``right`` change their sign.
+#: no further than 3, and by how much nearer than the point (log) what is seen in its place is, 0 where that
+#: is the subject itself. Where the face points, to the right, up and away. Logarithms: of the focal length
+#: (mm) by the distance of the waist, of that distance (metres) and of the focal length. Metres of the camera
+#: above the eyes; radians it leans to the right; the logarithm of the seconds the shot lasts. In the mirror
+#: those of ``right`` change their sign.
 MARKS = (
     *(f"{what}{point}" for point in POINTS for what in ("right_", "up_", "covered_")),
     *("right_face", "up_face", "away_face", "size", "distance", "lens", "over", "right_roll", "seconds"),

@@ -17,7 +17,7 @@ from .device import Backend, vectorised
 from .film import film_table, to_encoded, to_linear
 from .loaded import Loaded
 from .moments import Moments
-from .types import GUIDE_SIDE, Style
+from .types import GUIDE_SIDE, Probed, Style
 
 #: Rows of a picture above which its edges are drawn to a part of a pixel.
 FINE = 360
@@ -344,6 +344,28 @@ class Passes:
         cells = self._backend.buffer((out.size,), np.uint8)
         guides.gather_guides(vis, *tables, len(out), *size, GUIDE_SIDE, cells)
         out.reshape(-1)[:] = cells if self._backend.on_host else cells.to_numpy()
+
+    def probe(
+        self,
+        loaded: Loaded,
+        vis: Any,
+        roles: NDArray[np.uint8],
+        pixels: NDArray[np.int32],
+        size: tuple[int, int],
+        out: Probed,
+    ) -> None:
+        """What pixels [N, K] of visibility buffers show (see ``Renderer.render``), into ``out``."""
+        from .kernels import guides  # only where they are asked for: it is compiled then
+
+        a, up = loaded.arrays, self._backend.upload
+        role = up(np.ascontiguousarray(roles).reshape(-1))
+        first = np.arange(len(pixels), dtype=np.int32)[:, None] * np.int32(size[0] * size[1])
+        flat = up(np.where(pixels < 0, np.int32(-1), pixels + first).reshape(-1))
+        near, seen = (self._backend.buffer((pixels.size,), kind) for kind in (np.float32, np.uint8))
+        tables = (a["info"], a["surface_object"], role, roles.shape[1])
+        guides.probe(vis, *tables, flat, pixels.shape[1], pixels.size, near, seen)
+        for found, here in ((near, out.near), (seen, out.role)):
+            here.reshape(-1)[:] = found if self._backend.on_host else found.to_numpy()
 
     def objects_seen(self, loaded: Loaded, layer: Layer, objects: NDArray[np.int32]) -> None:
         """The same as :meth:`object_ids` of what was not shaded."""

@@ -25,8 +25,16 @@ from .moments import Moments
 from .optics import Lens, lens_of
 from .passes import Passes
 from .pool import Pool
-from .types import GUIDE_SIDE, GUIDES, Frames, RenderScene, Style, Views
-from .views import check_levels, check_moments, check_roles, left_out, pack_views, with_other_levels
+from .types import GUIDE_SIDE, GUIDES, Frames, Probed, RenderScene, Style, Views
+from .views import (
+    check_levels,
+    check_moments,
+    check_pixels,
+    check_roles,
+    left_out,
+    pack_views,
+    with_other_levels,
+)
 from .visibility import Visibility
 
 
@@ -75,14 +83,17 @@ class Renderer:
         depth: bool = False,
         roles: NDArray[np.uint8] | None = None,
         pictures: bool = True,
+        pixels: NDArray[np.int32] | None = None,
     ) -> Frames:
         """Draw every view.
 
         palettes: float32 [M, P, 3, 4], world-from-bind matrices of each moment; size: (width, height)
         roles: uint8 [N, objects], NO_ROLE, SUBJECT or OTHERS of each object in each view, for guides
         pictures: whether to shade; colours [N, 0, 0, 3] are quick where ids, depths or guides are enough
+        pixels: int32 [N, K], with roles: some of each view, counted row by row, less than 0 for none; what
+            they show is told
         returns colours uint8 [N, H, W, 3], and if asked for object ids int32 and depths float32 [N, H, W],
-            and guides
+            guides, and what the pixels show
         """
         content = self._loaded
         if content is None:
@@ -98,6 +109,10 @@ class Renderer:
         if roles is not None:
             check_roles(roles, count, int(content.scene.surface_object.max(initial=-1)) + 1)
             guides = np.empty((count, GUIDE_SIDE, GUIDE_SIDE, len(GUIDES)), np.uint8)
+        probed = None
+        if pixels is not None:
+            check_pixels(pixels, count, (width, height))
+            probed = Probed(np.empty(pixels.shape, np.float32), np.empty(pixels.shape, np.uint8))
         chunk = self._chunk(content, hidden, (width, height))
         chunk = -(-count // max(-(-count // chunk), 1))  # as few of them as fit, of one size
         several = len(np.unique(moment))
@@ -130,6 +145,10 @@ class Renderer:
                     self._passes.guides(
                         content, self._buffers["vis"], roles[part], (width, height), guides[part]
                     )
+                if probed is not None and pixels is not None and roles is not None:
+                    here = Probed(probed.near[part], probed.role[part])
+                    seen, some = self._buffers["vis"], pixels[part]
+                    self._passes.probe(content, seen, roles[part], some, (width, height), here)
             except (MemoryError, RuntimeError) as error:
                 if part.stop - begin == 1 or not out_of_memory(error):
                     raise
@@ -140,7 +159,7 @@ class Renderer:
                 moved, every = slice(0), False
                 continue
             begin = part.stop
-        return Frames(color, objects, far, guides)
+        return Frames(color, objects, far, guides, probed)
 
     def levels(self, palettes: NDArray[np.float32], views: Views, size: tuple[int, int]) -> NDArray[np.int32]:
         """The level of detail that each view takes of each detailed body, int32 [N, B]; finer is less.

@@ -8,6 +8,7 @@ camera looking at one moment; a launch draws many views of many moments.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -129,13 +130,26 @@ class Views:
     detail: NDArray[np.int32] | None = None
 
 
+class Probed(NamedTuple):
+    """What pixels [N, K] show.
+
+    near: float32, 1/z (metres along the axis); role: uint8, of the object; both 0 where nothing is
+    """
+
+    near: NDArray[np.float32]
+    role: NDArray[np.uint8]
+
+
 @dataclass(frozen=True, eq=False)
 class Frames:
     """color: uint8 [N, H, W, 3] sRGB; ids: int32 [N, H, W] object id or -1, None unless asked for
     depth: float32 [N, H, W], metres along the optical axis, inf where nothing is; None unless asked for
-    guides: uint8 [N, GUIDE_SIDE, GUIDE_SIDE, len(GUIDES)]; None unless asked for"""
+    guides: uint8 [N, GUIDE_SIDE, GUIDE_SIDE, len(GUIDES)]; None unless asked for
+    probed: at the pixels that were asked for
+    """
 
     color: NDArray[np.uint8]
     ids: NDArray[np.int32] | None
     depth: NDArray[np.float32] | None = None
     guides: NDArray[np.uint8] | None = None
+    probed: Probed | None = None

@@ -52,6 +52,14 @@ def check_roles(roles: NDArray[np.uint8], count: int, objects: int) -> None:
         )
 
 
+def check_pixels(pixels: NDArray[np.int32], count: int, size: tuple[int, int]) -> None:
+    """Raises ValueError for pixels that are not some of every view."""
+    if pixels.ndim != 2 or len(pixels) != count or pixels.dtype != np.int32:
+        raise ValueError(f"pixels: expected int32 [{count}, K], got {pixels.dtype} {pixels.shape}")
+    if pixels.size and pixels.max() >= size[0] * size[1]:
+        raise ValueError(f"pixels: {pixels.max()} is in no picture of {size[0]} × {size[1]}")
+
+
 def with_other_levels(
     hidden: NDArray[np.int32], detail: Levels, chosen: NDArray[np.int32], walls: int
 ) -> NDArray[np.int32]:

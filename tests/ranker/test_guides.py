@@ -112,10 +112,11 @@ def test_composition_is_what_marks_say() -> None:
     at = {name: k for k, name in enumerate(MARKS)}
     marks[..., at["right_eyes"]] = torch.tensor([0.5, -0.4, 1.5])
     marks[..., at["up_eyes"]] = 1 / 3
+    marks[..., at["up_top"]] = 1.4
     marks[..., at["up_crown"]] = 1.2
     marks[..., at["right_face"]] = -0.8
     marks[..., at["right_feet"]] = torch.nan
-    marks[..., at["covered_eyes"]] = torch.tensor([0.0, 1.0, torch.nan])
+    marks[..., at["covered_eyes"]] = torch.tensor([0.02, 0.1, torch.nan])  # of 4 m: 8 and 38 cm nearer
     marks[..., at["distance"]] = np.log(4.0)
     near = torch.zeros(1, 3, SIDE, SIDE, dtype=torch.uint8)
     near[:, 1] = 1 + round(254 * np.log(64 / 1.0) / np.log(64 / 0.25))  # a metre away, all over the frame
@@ -131,12 +132,13 @@ def test_composition_is_what_marks_say() -> None:
     assert covered[1] > 0.95
     there, begin = found[0, 0, len(MARKS) :], len(MARKS) + len(POINTS)
     assert there[: len(POINTS)].tolist() == [float(name != "feet") for name in POINTS]
-    lead, thirds, aside, above = found[0, :, begin : begin + 4].T
+    lead, thirds, aside, hat, above = found[0, :, begin : begin + 5].T
     torch.testing.assert_close(lead, torch.tensor([0.4, -0.32, 1.2]))
     assert thirds.abs().max() < 1e-6
     torch.testing.assert_close(aside, torch.tensor([0.5, 0.4, 1.5]))
+    torch.testing.assert_close(hat, torch.full((3,), 0.4))
     torch.testing.assert_close(above, torch.full((3,), 0.2))
-    looks = found[0, :, begin + 9 : begin + 20]  # and the shares that are nearer
+    looks = found[0, :, begin + 10 : begin + 21]  # and the shares that are nearer
     assert looks[0].max() < 0.01
     assert looks[1].min() > 0.95
 

@@ -15,7 +15,7 @@ from runtime.raster.types import STYLES, Camera, Frames, Views
 from ..cinema.track import CameraTrack, camera_axes
 from ..propose.types import CameraProposal, StoryProposal
 from ..stage.assemble import StagedScene, palettes
-from .guides import About, Places, guides_of, roles_of
+from .guides import About, Places, guides_of, pointed, roles_of
 from .shutter import between, camera_between, exposed_frames, moments_needed
 
 #: The discriminator looks at this many frames of this size (the paper's section 3.3).
@@ -28,8 +28,12 @@ _LOOKED_AT = 4
 
 
 def segment_frames(frames: int, segments: int = SEGMENTS) -> NDArray[np.int64]:
-    """TSN's test-time sampling: the middle frame of each of ``segments`` equal parts of a shot."""
-    return ((np.arange(segments) + 0.5) * frames / segments).astype(np.int64)
+    """Frames evenly spaced over a shot, its first and its last among them.
+
+    TSN takes the middles of equal parts, and never sees how a shot begins and ends, where it shows whether a
+    pan or a push arrives.
+    """
+    return np.asarray(np.round(np.arange(segments) * (frames - 1) / (segments - 1)).astype(np.int64))
 
 
 def not_drawn(staged: StagedScene, camera: CameraProposal) -> NDArray[np.bool_]:
@@ -70,15 +74,18 @@ class Camerawork:
             pictures: whether to shade, or frames of 0 x 0 will do
         """
         views, moments = self._segments(staged, stories, cameras, which)
-        roles = None
-        if about is not None:
-            roles = np.repeat(roles_of(staged, about), len(which), axis=0)
-        drawn = self._renderer(staged, style).render(moments, views, size, roles=roles, pictures=pictures)
-        frames = drawn.color.reshape(len(cameras), len(which), *drawn.color.shape[1:])
-        if drawn.guides is None or about is None:
-            return Seen(frames, None)
+        renderer = self._renderer(staged, style)
+        if about is None:
+            drawn = renderer.render(moments, views, size, pictures=pictures)
+            return Seen(drawn.color.reshape(len(cameras), len(which), *drawn.color.shape[1:]), None)
         places = [_at(subject.places[c.story], which) for c, subject in zip(cameras, about, strict=True)]
-        return Seen(frames, guides_of(drawn.guides, views.camera, places, which, SEGMENTS))
+        roles = np.repeat(roles_of(staged, about), len(which), axis=0)
+        at = pointed(views.camera, places, size)
+        drawn = renderer.render(moments, views, size, roles=roles, pictures=pictures, pixels=at.pixels)
+        assert drawn.guides is not None
+        assert drawn.probed is not None
+        frames = drawn.color.reshape(len(cameras), len(which), *drawn.color.shape[1:])
+        return Seen(frames, guides_of(drawn.guides, drawn.probed, at, views.camera, places, which, SEGMENTS))
 
     def judge_ids(
         self,

@@ -8,13 +8,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ranker.guides import CHANNELS, FARTHEST, FLOW, MARKS, POINTS, SIDE, Guides, pairs
 from ranker.guides import NEAREST as NEAREST_TOLD
-from runtime.raster.types import FAR, GUIDE_SIDE, NEAREST, OTHERS, SUBJECT, Camera
+from runtime.raster.types import FAR, GUIDE_SIDE, NEAREST, OTHERS, SUBJECT, Camera, Probed
 
 from ..cinema.track import project
 from ..lang.ir import Shot
@@ -87,8 +88,35 @@ def roles_of(staged: StagedScene, about: Sequence[About]) -> NDArray[np.uint8]:
     return out
 
 
+class Pointed(NamedTuple):
+    """Where points are in N pictures.
+
+    place: [N, K, 2], half frames from the middle to the right and to the top, NaN behind the camera
+    depth: [N, K], metres along the axis; pixels: int32 [N, K] counted row by row, -1 out of the picture
+    """
+
+    place: NDArray[np.float64]
+    depth: NDArray[np.float64]
+    pixels: NDArray[np.int32]
+
+
+def pointed(camera: Camera, places: Sequence[Places], size: tuple[int, int]) -> Pointed:
+    """Where the points of P shots lie in their pictures of ``size`` (width, height)."""
+    points = np.concatenate([p.points for p in places]).astype(float)
+    position, focal = camera.position.astype(float), camera.focal.astype(float)
+    xy, depth = project(points, position, camera.axes.astype(float), focal, camera.sensor)
+    before = np.isfinite(depth) & (depth > _BEHIND)
+    place = np.where(before[..., None], np.clip((2 * xy - 1) * (1, -1), -_FARTHEST, _FARTHEST), np.nan)
+    inside = before & (np.abs(place) < 1).all(axis=-1)
+    column, row = (np.where(inside, xy[..., k] * size[k], 0).astype(np.int32) for k in (0, 1))
+    column, row = np.minimum(column, size[0] - 1), np.minimum(row, size[1] - 1)
+    return Pointed(place, depth, np.where(inside, row * np.int32(size[0]) + column, np.int32(-1)))
+
+
 def guides_of(
     drawn: NDArray[np.uint8],
+    probed: Probed,
+    at: Pointed,
     camera: Camera,
     places: Sequence[Places],
     which: Sequence[int],
@@ -96,8 +124,8 @@ def guides_of(
 ) -> Guides:
     """Guides of P shots by k frames each.
 
-    drawn: uint8 [P k, SIDE, SIDE, 6] of the renderer; camera: of these P k pictures; places: [P] in these k
-    frames; which: the k frames they are, of ``whole``
+    drawn: uint8 [P k, SIDE, SIDE, 6] of the renderer; probed: [P k, points], what it saw ``at`` the points
+    camera: of these P k pictures; places: [P] in these k frames; which: the k frames they are, of ``whole``
     """
     shots = len(places)
     count = len(which)
@@ -109,27 +137,23 @@ def guides_of(
     matched = pairs(whole)
     flow = np.full((shots, len(matched), FLOW, FLOW, 2), np.nan, np.float16)
     if count == whole:
-        near = _nearness(maps[..., CHANNELS.index("nearness")])
-        flow[:] = _flow(near, camera, shots, matched)
-    return Guides(maps, flow, _marks(maps[..., CHANNELS.index("nearness")], camera, places))
+        flow[:] = _flow(_nearness(maps[..., CHANNELS.index("nearness")]), camera, shots, matched)
+    return Guides(maps, flow, _marks(probed, at, camera, places))
 
 
-def _marks(near: NDArray[np.uint8], camera: Camera, places: Sequence[Places]) -> NDArray[np.float16]:
-    """float16 [P, T, len(MARKS)]; near: the codes of nearness, [P, T, SIDE, SIDE]."""
-    shots, count = near.shape[:2]
+def _marks(probed: Probed, at: Pointed, camera: Camera, places: Sequence[Places]) -> NDArray[np.float16]:
+    """float16 [P, T, len(MARKS)]; probed: what is seen where the points are, [P T, points]."""
+    shots, near = len(places), probed.near
+    count = len(near) // shots
     points = np.concatenate([p.points for p in places]).astype(float)
     face = np.concatenate([p.face for p in places]).astype(float)
     position, focal = camera.position.astype(float), camera.focal.astype(float)
     axes = camera.axes.astype(float)
-    xy, depth = project(points, position, axes, focal, camera.sensor)
-    before = np.isfinite(depth) & (depth > _BEHIND)
-    place = np.where(before[..., None], np.clip((2 * xy - 1) * (1, -1), -_FARTHEST, _FARTHEST), np.nan)
-    inside = before & (np.abs(place) < 1).all(axis=-1)
-    cell = np.where(inside[..., None], (place * (1, -1) + 1) * SIDE / 2, 0).astype(int)
-    code = near.reshape(shots * count, SIDE, SIDE)
-    seen = code[np.arange(len(code))[:, None], cell[..., 1], cell[..., 0]].astype(float)
-    own = np.log(FAR / np.maximum(depth, NEAREST, where=before, out=np.ones_like(depth)))
-    covered = np.where(seen > 0, (seen - 1) / 254 * np.log(FAR / NEAREST), -1.0) - own
+    inside, place = at.pixels >= 0, at.place
+    own = np.log(FAR / np.maximum(at.depth, NEAREST, where=inside, out=np.ones_like(at.depth)))
+    seen = np.log(FAR * np.clip(near, 1 / FAR, 1 / NEAREST))
+    covered = np.where(near > 0, seen, -1.0) - own
+    covered = np.where(probed.role == SUBJECT, 0.0, covered)  # nobody stands in their own way
     told = np.stack([place[..., 0], place[..., 1], np.where(inside, covered, np.nan)], axis=-1)
     waist, eyes = (points[:, POINTS.index(name)] for name in ("waist", "eyes"))
     away = np.maximum(np.linalg.norm(waist - position, axis=-1), 0.2)

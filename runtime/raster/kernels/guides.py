@@ -6,7 +6,7 @@
 import taichi as ti
 
 from ..types import FAR, GUIDES, NEAREST, OTHERS, SUBJECT
-from .geometry import i1, i2, nearness, triangle, u8s, u64s
+from .geometry import f1, i1, i2, nearness, triangle, u8s, u64s
 
 COUNT = len(GUIDES)
 FACE = 2  # of ``head``: the front of one
@@ -65,3 +65,29 @@ def gather_guides(
         far = ti.cast(pixels, ti.f32) / ti.max(near, 1e-9)
         code = 255.0 - scale * ti.log(ti.min(ti.max(far, NEAREST), FAR) / NEAREST)
         out[COUNT * k + 5] = ti.cast(code + 0.5, ti.u8) if near > 0 else ti.cast(0, ti.u8)
+
+
+@ti.kernel
+def probe(
+    vis: u64s,
+    info: i2,
+    owner: i1,
+    role: u8s,
+    objects: ti.i32,
+    pixels: i1,
+    each: ti.i32,
+    count: ti.i32,
+    near: f1,
+    seen: u8s,
+):
+    """1/z of what ``count`` pixels of all buffers show, ``each`` of every view, and the role of what that is;
+    0 where nothing is, and where the pixel is less than 0."""
+    for k in range(count):
+        near[k] = 0.0
+        seen[k] = ti.cast(0, ti.u8)
+        at = pixels[k]
+        if at >= 0:
+            t = triangle(vis, at)
+            if t >= 0:
+                near[k] = nearness(vis, at)
+                seen[k] = role[k // each * objects + owner[info[t, 0]]]

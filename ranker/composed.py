@@ -23,9 +23,14 @@ _COMMON = {"size": (3.2, 0.7), "lens": (3.8, 0.35), "distance": (0.7, 0.7), "sec
 _LOOKS = [(x, y) for x in (-0.85, -0.3, 0.3, 0.85) for y in (-0.6, 0.5)]
 _NEARER = (0.3, math.log(2), 1.1)
 
-#: Numbers of :func:`composed` of a frame: marks, which points there are, composition, looks, and of each
-#: point whether it is covered, and whether it is in the frame.
-COMPOSED = len(MARKS) + len(POINTS) + 10 + len(_LOOKS) + len(_NEARER) + 2 * len(POINTS)
+#: Points of a body by which one says how much of it is seen.
+_BODY = [POINTS.index(p) for p in ("eyes", "chin", "pocket", "waist", "hand_l", "hand_r", "knees")]
+_HANDS = [POINTS.index(p) for p in ("hand_l", "hand_r")]
+_OTHERS = [POINTS.index(p) for p in ("other_1", "other_2")]
+
+#: Numbers of :func:`composed` of a frame: marks, which points there are, composition, looks, what is seen,
+#: and of each point whether it is covered, and whether it is in the frame.
+COMPOSED = len(MARKS) + len(POINTS) + 10 + len(_LOOKS) + len(_NEARER) + 7 + 2 * len(POINTS)
 #: Which of them says whether the eyes are in the frame.
 EYES_INSIDE = COMPOSED - len(POINTS) + POINTS.index("eyes")
 #: Numbers that :func:`over_time` makes of each of a frame's.
@@ -66,7 +71,20 @@ def composed(told: Tensor, nearness: Tensor) -> Tensor:
     ]
     looks, share = _foreground(nearness, marks["distance"])
     parts = [torch.stack(common, -1).nan_to_num(), there.float(), torch.stack(composition, -1)]
-    return torch.cat([*parts, looks, share, covered, inside], -1)
+    return torch.cat([*parts, looks, share, _seen(inside, covered), covered, inside], -1)
+
+
+def _seen(inside: Tensor, covered: Tensor) -> Tensor:
+    """How much is seen of whom, [B, T, 7]: of the body's points in the frame the share that nothing covers;
+    the eyes; head and middle in the frame, and all of the head; a hand at least; of the others the most; and
+    whether there is nobody at all."""
+    clear = inside - covered
+    body, there = clear[..., _BODY].sum(-1), inside[..., _BODY].sum(-1)
+    eyes, chin, waist = (inside[..., POINTS.index(p)] for p in ("eyes", "chin", "waist"))
+    hands, others = clear[..., _HANDS].amax(-1), clear[..., _OTHERS].amax(-1)
+    somebody = torch.stack([clear[..., _BODY].amax(-1), eyes, others], -1).amax(-1)
+    told = (body / there.clamp_min(0.5), clear[..., POINTS.index("eyes")], eyes * waist, eyes * chin)
+    return torch.stack([*told, hands, others, 1 - somebody], -1)
 
 
 def _foreground(nearness: Tensor, distance: Tensor) -> tuple[Tensor, Tensor]:

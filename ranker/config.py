@@ -28,7 +28,7 @@ class ModelConfig:
     measures, marks: numbers of L_h of a shot, and of a frame, that are read off the features before the heads
         judge, 0 for none
     guides: width of what is made of guides, 0 for none
-    liking: what a deviation in how well a good shot is liked counts beside log odds of being good
+    liking: what log odds of being liked well count beside those of being good
     """
 
     movements: tuple[str, ...]

@@ -299,14 +299,17 @@ class Dataset:
 
     @cached_property
     def liked(self) -> NDArray[np.float32]:
-        """How well positives are liked among themselves, float32 [N]: ``opinion`` of a label's ``about``, as
-        deviations from the mean, within 3; NaN where not known, and for negatives."""
+        """How well clips are liked, float32 [N]: ``opinion`` of a label's ``about``, as deviations from the
+        mean of positives, within 3; -3 for negatives, NaN where not known or doubtful."""
         told = np.array([float(label.about.get("opinion", np.nan)) for label in self.labels])
         told[self.professional < 0.5] = np.nan
         if not np.isfinite(told).any():
             return told.astype(np.float32)
         middle, spread = np.nanmean(told), max(np.nanstd(told), 1e-6)
-        return np.clip((told - middle) / spread, -3, 3).astype(np.float32)
+        told = np.clip((told - middle) / spread, -3, 3)
+        told[self.professional < 0.5] = -3.0
+        told[self.doubtful] = np.nan
+        return told.astype(np.float32)
 
     def split(self, share: float, seed: int) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
         """Indices to train on, and held out: whole groups in a random order until ``share`` is reached.

@@ -16,7 +16,7 @@ from torch import Tensor, nn
 from .composed import COMPOSED, EYES_INSIDE, SUMMED, composed, over_time
 from .guides import CHANNELS, FLOW, SIDE, Guides, pairs
 
-_MAPS, _FRAME = 128, 128  # numbers that describe the maps of a frame, and all of a frame
+_MAPS, _WIDE, _FRAME = 128, 256, 160  # numbers that describe the maps of a frame, and all of a frame
 _PAIR, _MOVED = 64, 256  # and a pair of frames, all pairs
 _FINE = 20.0  # by what motion is multiplied, so that slow ones are seen
 
@@ -61,7 +61,8 @@ class GuideNet(nn.Module):
         last = widths[-1] * (SIDE // 2 ** (len(widths) - 1)) ** 2
         self.maps = nn.Sequential(*steps, nn.Flatten(), nn.Linear(last, _MAPS), nn.ReLU())
         self.evened = nn.BatchNorm1d(COMPOSED, affine=False)  # a tenth may be much for one number
-        self.marks = nn.Sequential(nn.Linear(_MAPS + COMPOSED, _FRAME), nn.ReLU())
+        wide = nn.Sequential(nn.Linear(_MAPS + COMPOSED, _WIDE), nn.ReLU())
+        self.marks = nn.Sequential(*wide, nn.Linear(_WIDE, _FRAME), nn.ReLU())
         self.pairs = nn.Sequential(
             *(nn.Conv2d(4, 32, 3, 1, 1), nn.ReLU(), nn.Conv2d(32, 32, 3, 2, 1), nn.ReLU(), nn.Flatten()),
             *(nn.Linear(32 * (FLOW // 2) ** 2, _PAIR), nn.ReLU()),

@@ -7,6 +7,9 @@ import torch
 from torch import Tensor
 from torch.nn import functional
 
+#: Bounds of L_o, deviations from the mean of good shots: a good one in six is above the fourth, one in thirty
+#: above the last.
+STEPS = (-1.0, -0.3, 0.3, 1.0, 1.6)
 _STRAIGHT = 0.3  # deviations: small ones count too, since takes of a shot differ by little
 
 
@@ -36,11 +39,18 @@ def class_loss(logits: tuple[Tensor, ...], labels: tuple[Tensor, ...], smoothing
 
 
 def liking_loss(told: Tensor, liked: Tensor) -> Tensor:
-    """L_o: how far what is told of good shots is from how well they are liked among themselves, [B] both.
+    """L_o: whether shots are liked better than each of :data:`STEPS`, told [B, steps] as log odds.
 
-    Smooth L1 (Girshick 2015) in deviations; NaN is not known, and with nothing known it is 0
+    Ordinal regression by one binary problem a step (Frank and Hall 2001): which shot is the better one is
+    asked of good and bad ones alike, and most sharply among the best.
+    liked: [B], how well, in deviations from the mean of good ones, less than all steps for bad ones; NaN is
+    not known, and with nothing known it is 0
     """
-    return _apart(told, liked)
+    known = liked.isfinite()
+    if not known.any():
+        return told.new_zeros(())
+    above = (liked[known, None] > told.new_tensor(STEPS)).float()
+    return functional.binary_cross_entropy_with_logits(told[known], above)
 
 
 def contrast_loss(

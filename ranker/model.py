@@ -24,6 +24,7 @@ from .config import ModelConfig
 from .engine import quick_bfloat16
 from .guided import Guided, GuideNet
 from .guides import pairs
+from .losses import STEPS
 from .motion import NUMBERS
 from .vision import torchvision_models
 
@@ -37,10 +38,11 @@ OF_GUIDES = ("guided.", "gathered.", "judged.", "reader_guided.", "marker_guided
 class Output(NamedTuple):
     """What the network says of B shots.
 
-    logit [B], of p_b; liked [B], by how many deviations more than the average good one; movement, scale,
-    angle [B, classes], logits of p_c; feature [B, D], the average of the frames' features; contrast [B, C],
-    unit vectors z of L_q; told [B, measures], what is read off the features of the numbers of L_h; marked
-    [B, T, marks], the same of single frames; mapped [B, T, marks], what is told of frames by their guides
+    logit [B], of p_b; liked [B, steps], log odds of being liked better than each of
+    :data:`ranker.losses.STEPS`; movement, scale, angle [B, classes], logits of p_c; feature [B, D], the
+    average of the frames' features; contrast [B, C], unit vectors z of L_q; told [B, measures], what is read
+    off the features of the numbers of L_h; marked [B, T, marks], the same of single frames; mapped [B, T,
+    marks], what is told of frames by their guides
     """
 
     logit: Tensor
@@ -104,8 +106,8 @@ class ShotRanker(nn.Module):
         #: Numbers that describe a frame: [N, described] is what the backbone makes of N frames.
         self.described = width * (3 if config.moments else 1)
         sizes = (len(config.movements), len(config.scales), len(config.angles))
-        fused, judgements = 3 * self.described, 2 + sum(sizes)
-        self.professional, self.liked = nn.Linear(fused, 1), nn.Linear(fused, 1)
+        fused, judgements = 3 * self.described, 1 + len(STEPS) + sum(sizes)
+        self.professional, self.liked = nn.Linear(fused, 1), nn.Linear(fused, len(STEPS))
         nn.init.zeros_(self.liked.weight)  # of sets without opinions it learns nothing
         self.movement, self.scale, self.angle = (nn.Linear(fused, n) for n in sizes)
         self.contrast = nn.Sequential(nn.Linear(width, 256), nn.ReLU(), nn.Linear(256, config.contrast))
@@ -114,7 +116,7 @@ class ShotRanker(nn.Module):
             numbers = NUMBERS * len(pairs(config.frames))
             hidden = nn.Sequential(nn.Linear(numbers, 256), nn.ReLU(), nn.Dropout(0.35))
             self.motion = nn.Sequential(*hidden, nn.Linear(256, config.motion), nn.ReLU(), nn.Dropout(0.35))
-            self.professional_moved = nn.Linear(config.motion, 2, bias=False)
+            self.professional_moved = nn.Linear(config.motion, 1 + len(STEPS), bias=False)
             self.movement_moved = nn.Linear(config.motion, len(config.movements), bias=False)
         self.reader: nn.Module | None = None
         if config.measures:
@@ -207,13 +209,13 @@ class ShotRanker(nn.Module):
                 judged = judged + self.reasons(torch.cat(known, 1))
             professional, liked, movement, scale, angle = judged.split(sizes, 1)
             contrast = functional.normalize(self.contrast(average), dim=1)
-            logit, liked = professional.squeeze(1), liked.squeeze(1)
+            logit = professional.squeeze(1)
             classes = (movement, scale, angle)
             return Output(logit, liked, *classes, average, contrast, told, marked, mapped)
 
     def margin(self, out: Output) -> Tensor:
         """What shots are put in order by, [B]: log odds of being good, and how well they would be liked."""
-        return out.logit + self.config.liking * out.liked
+        return out.logit + self.config.liking * out.liked.mean(1)
 
     def _mapped(self, guides: Guided | None) -> _Mapped | None:
         if self.guided is None or guides is None:

@@ -61,7 +61,8 @@ def test_guides_lie_beside_the_frames_of_their_clips(tmp_path: Path) -> None:
     np.testing.assert_array_equal(some.maps[0], found.maps[0][[2, 0]])
     np.testing.assert_array_equal(some.marks[0], found.marks[0][[2, 0]])
     np.testing.assert_array_equal(data.grade[:4], [0.25, 0, 0.25, 0])
-    assert not np.isfinite(data.liked[1::2]).any()  # nothing is said of bad ones
+    assert np.isnan(data.liked[3])  # that one is doubtful
+    np.testing.assert_array_equal(data.liked[[1, 5, 7]], -3.0)  # bad ones are liked less than any
     np.testing.assert_array_equal(data.liked[::2], 0.0)  # all good ones are liked alike
 
 
@@ -138,6 +139,13 @@ def test_composition_is_what_marks_say() -> None:
     torch.testing.assert_close(aside, torch.tensor([0.5, 0.4, 1.5]))
     torch.testing.assert_close(hat, torch.full((3,), 0.4))
     torch.testing.assert_close(above, torch.full((3,), 0.2))
+    whole, eyes, middle, head, hands, others, nobody = found[0, :, begin + 21 : begin + 28].T
+    torch.testing.assert_close(whole[:2], torch.tensor([1.0, 6 / 7]), atol=0.02, rtol=0.0)  # of seven points
+    torch.testing.assert_close(eyes, torch.tensor([1.0, 0.0, 0.0]), atol=0.06, rtol=0.0)
+    torch.testing.assert_close(middle, torch.tensor([1.0, 1.0, 0.0]), atol=0.02, rtol=0.0)
+    torch.testing.assert_close(head, middle)
+    assert min(hands.min(), others.min()) > 0.95
+    assert nobody.max() < 0.05
     looks = found[0, :, begin + 10 : begin + 21]  # and the shares that are nearer
     assert looks[0].max() < 0.01
     assert looks[1].min() > 0.95

@@ -11,7 +11,7 @@ from ranker_clips import model_config
 
 from ranker.composed import fuse
 from ranker.dictionary import Dictionary, follow, momentum_copy
-from ranker.losses import binary_loss, class_loss, contrast_loss, hint_loss, liking_loss
+from ranker.losses import STEPS, binary_loss, class_loss, contrast_loss, hint_loss, liking_loss
 from ranker.model import ShotRanker, normalised
 
 
@@ -54,10 +54,18 @@ def test_hint_loss_is_square_near_and_straight_far_over_what_is_known() -> None:
     assert float(hint_loss(told, torch.full((2, 2), math.nan))) == 0.0
 
 
-def test_liking_loss_is_the_same_over_those_that_are_known_to_be_liked() -> None:
-    told, liked = torch.tensor([0.1, -2.0, 1.0]), torch.tensor([0.0, math.nan, -1.0])
-    assert float(liking_loss(told, liked)) == pytest.approx((0.1**2 / 2 / 0.3 + 2.0 - 0.3 / 2) / 2)
-    assert float(liking_loss(told, torch.full((3,), math.nan))) == 0.0
+def test_liking_loss_asks_of_every_step_whether_a_shot_is_above_it() -> None:
+    rng = np.random.default_rng(1)
+    told, liked = rng.normal(size=(4, len(STEPS))), np.array([0.5, math.nan, -3.0, 3.0])
+    expected = []
+    for row, value in zip(told, liked, strict=True):
+        for odds, step in zip(row, STEPS, strict=True):
+            p = 1 / (1 + math.exp(-odds))
+            if not math.isnan(value):
+                expected.append(-math.log(p if value > step else 1 - p))
+    found = float(liking_loss(torch.tensor(told), torch.tensor(liked)))
+    assert found == pytest.approx(np.mean(expected), rel=1e-5)
+    assert float(liking_loss(torch.tensor(told), torch.full((4,), math.nan))) == 0.0
 
 
 def test_contrast_loss_is_the_papers_ratio() -> None:

@@ -69,6 +69,36 @@ def test_guides_are_shares_of_what_the_ids_show(style: str, size: tuple[int, int
     assert (frames.guides[..., 0].max((1, 2)) == 255).all()
 
 
+@pytest.mark.parametrize("size", [(224, 224), (97, 61)])
+def test_pixels_show_what_ids_and_depths_say(size: tuple[int, int]) -> None:
+    drawer = Renderer("cpu", STYLES["board"])
+    drawer.load(room())
+    views = looking([(2.6, -1.8, 1.5), (2.6, -1.8, 1.5), (0.5, 0.2, 1.6)], [(2.0, 1.8, 1.0)] * 3)
+    roles = np.zeros((3, 13), np.uint8)
+    roles[:, PERSON], roles[1, OTHER] = SUBJECT, OTHERS
+    pixels = np.random.default_rng(0).integers(-1, size[0] * size[1], (3, 400)).astype(np.int32)
+    pixels[:, :20] = -1
+    asked = {"ids": True, "depth": True, "roles": roles}
+    frames = drawer.render(still(2), views, size, pixels=pixels, **asked)
+    assert frames.probed is not None
+    assert frames.ids is not None
+    assert frames.depth is not None
+    at = np.maximum(pixels, 0)
+    far, ids = (np.take_along_axis(a.reshape(3, -1), at, 1) for a in (frames.depth, frames.ids))
+    shown = (pixels >= 0) & (ids >= 0)
+    near = np.where(shown, 1 / np.where(shown, far, 1.0), 0.0)
+    np.testing.assert_allclose(frames.probed.near, near, rtol=1e-5)
+    role = np.where(shown, np.take_along_axis(roles, np.maximum(ids, 0), 1), 0)
+    np.testing.assert_array_equal(frames.probed.role, role)
+    assert {int(r) for r in np.unique(role)} == {0, SUBJECT, OTHERS}
+    bare = drawer.render(still(2), views, size, pixels=pixels, roles=roles, pictures=False).probed
+    assert bare is not None
+    np.testing.assert_array_equal(bare.near, frames.probed.near)
+    for wrong in (pixels[:2], pixels.astype(np.int64), pixels + size[0] * size[1]):
+        with pytest.raises(ValueError, match="pixels"):
+            drawer.render(still(2), views, size, pixels=wrong, **asked)
+
+
 def test_a_head_and_its_front_are_told_apart() -> None:
     head = sphere((0.0, 0.0, 1.5), (0.2, 0.2, 0.2), (0.9, 0.7, 0.6), 0, 24)
     body = sphere((0.0, 0.0, 0.8), (0.3, 0.3, 0.5), (0.2, 0.3, 0.6), 1, 24)

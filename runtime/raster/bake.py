@@ -16,8 +16,6 @@ from scipy.ndimage import gaussian_filter
 from ..mesh import MATERIALS, Mesh
 
 REACH = 0.16  # metres, standard deviation of the blur
-CELLS = 500_000  # most cells of a volume
-CELL = 0.07  # metres, finest cell
 CEILING = 1.9  # metres; broad things wholly above it do not block the key light of an interior
 GROUND = 0.03  # metres; what is wholly below it casts no shadow worth drawing
 BROAD = 1.5  # square metres
@@ -68,35 +66,6 @@ def stage_bounds(mesh: Mesh, casters: NDArray[np.int32]) -> tuple[NDArray[np.flo
     return points.min(axis=0), points.max(axis=0)
 
 
-def density_volume(mesh: Mesh, casters: NDArray[np.int32]) -> Volume:
-    """How much opaque surface of a static mesh there is, square metres in a cubic metre."""
-    if not len(mesh.faces):
-        return Volume(np.zeros((2, 2, 2), np.float32), np.zeros(3), 1.0)
-    solid = ~np.isin(mesh.materials, [MATERIALS.index("glass"), MATERIALS.index("glow")])
-    corners = mesh.vertices[mesh.faces[solid]].astype(np.float64)
-    margin = 2.5 * REACH
-    low, high = stage_bounds(mesh, casters)
-    low, high = low - margin, high + margin
-    cell = max(CELL, float((np.prod(high - low) / CELLS) ** (1 / 3)))
-    shape = np.ceil((high - low) / cell).astype(int) + 2
-    inside = ((corners.max(axis=1) > low) & (corners.min(axis=1) < high)).all(axis=1)
-    points, areas = _surface_points(corners[inside], cell * 0.7)
-    within = ((points > low) & (points < high)).all(axis=1)
-    points, areas = points[within], areas[within]
-    where = (points - low) / cell
-    base = np.floor(where).astype(np.int64)
-    part = where - base
-    weights = [(1 - part[:, a], part[:, a]) for a in range(3)]
-    strides = (int(shape[1] * shape[2]), int(shape[2]), 1)
-    first = base @ np.array(strides)
-    values = np.zeros(int(np.prod(shape)))
-    for i, j, k in np.ndindex(2, 2, 2):
-        share = weights[0][i] * weights[1][j] * weights[2][k]
-        index = first + (i * strides[0] + j * strides[1] + k)
-        values += np.bincount(index, weights=share * areas, minlength=len(values))
-    return Volume((values.reshape(shape) / cell**3).astype(np.float32), low, cell)
-
-
 def occlusion_volume(density: Volume) -> Volume:
     """How much of the ambient light a set keeps off, 0..SHELTER, from the blurred area of its surfaces."""
     cell = density.cell
@@ -105,29 +74,6 @@ def occlusion_volume(density: Volume) -> Volume:
     near = blurred * np.sqrt(2 * np.pi) * reach  # one plane gives 1 on it
     kept_off = SHELTER * (1.0 - np.exp(-1.3 * np.maximum(near - 0.38, 0.0)))
     return Volume(kept_off.astype(np.float32), density.low, cell)
-
-
-def _surface_points(
-    corners: NDArray[np.float64], spacing: float
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Points spread evenly over triangles [F, 3, 3], about ``spacing`` apart, and the area of each."""
-    a, u, v = corners[:, 0], corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
-    area = np.linalg.norm(np.cross(u, v), axis=1) / 2
-    longest = np.linalg.norm(np.stack([u, v, u - v]), axis=2).max(axis=0)
-    steps = np.clip(np.ceil(longest / spacing), 1, 400).astype(int)
-    points, areas = [np.zeros((0, 3))], [np.zeros(0)]
-    for n in np.unique(steps):
-        chosen = steps == n
-        # centres of the n^2 small triangles
-        i, j = np.meshgrid(np.arange(n), np.arange(n), indexing="ij")
-        upright = i + j < n
-        turned = i + j < n - 1
-        s = np.concatenate([(i[upright] + 1 / 3) / n, (i[turned] + 2 / 3) / n])
-        t = np.concatenate([(j[upright] + 1 / 3) / n, (j[turned] + 2 / 3) / n])
-        p = a[chosen, None] + s[:, None] * u[chosen, None] + t[:, None] * v[chosen, None]
-        points.append(p.reshape(-1, 3))
-        areas.append(np.repeat(area[chosen] / (n * n), n * n))
-    return np.concatenate(points), np.concatenate(areas)
 
 
 def light_basis(sun: NDArray[np.floating]) -> NDArray[np.float64]:

@@ -104,7 +104,7 @@ def loaded(scene: RenderScene, style: Style, backend: Backend, shading: Any) -> 
     opaque, glass = divided(scene)
     if glass is not None:
         glass = replace(glass, color=glass_colors(glass.color, style))
-    prepared = prepare(opaque, style)
+    prepared = prepare(opaque, style, backend.on_host)
     arrays = _uploaded(prepared, opaque, style, backend)
     arrays["floor"], columns, rows = _floor(prepared, backend)
     arrays["tops"] = _tops(prepared, arrays, (columns, rows), style, backend)

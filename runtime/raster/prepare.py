@@ -16,7 +16,8 @@ from scipy.sparse.csgraph import connected_components
 
 from ..materials import NIGHT_GLASS
 from ..mesh import MATERIALS, Mesh
-from .bake import Volume, density_volume, key_casters, stage_bounds
+from .bake import Volume, key_casters, stage_bounds
+from .density import density_volume
 from .detail import COUNT, Levels, with_levels
 from .film import to_linear
 from .looks import surface_colors
@@ -200,8 +201,8 @@ def quieted(color: NDArray[np.floating], quiet: float) -> NDArray[np.float64]:
     return softened + (pale - softened) * 0.5 * quiet
 
 
-def prepare(scene: RenderScene, style: Style) -> Prepared:
-    """Check, order and pack a scene. Raises ValueError."""
+def prepare(scene: RenderScene, style: Style, on_host: bool = False) -> Prepared:
+    """Check, order and pack a scene. on_host: whether kernels run on this processor. Raises ValueError."""
     check(scene)
     one_sided = scene.static_wall == ONE_SIDED
     static_wall = np.where(one_sided, np.int32(-1), scene.static_wall)
@@ -272,7 +273,7 @@ def prepare(scene: RenderScene, style: Style) -> Prepared:
         casters=(_casters(skinned, fitting, casting[moving_order]) + len(order)).astype(np.int32),
         area=touching,
         solid=solid,
-        density=density_volume(static, set_casters),
+        density=density_volume(static, set_casters, on_host),
         stage=stage_bounds(static, set_casters),
         levels=scene.levels,
         detail=detail,

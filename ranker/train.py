@@ -35,7 +35,7 @@ from .int8 import Ranges, measured_ranges
 from .losses import binary_loss, class_loss, contrast_loss, hint_loss, liking_loss
 from .model import OF_GUIDES, ShotRanker, normalised
 from .motion import motions
-from .weights import load_model, save_weights
+from .weights import load_model, load_tensors, save_weights
 
 #: Clips by which eight bits are fitted, and by which they are compared with float32.
 _MEASURED, _COMPARED = 64, 200
@@ -186,10 +186,10 @@ def train(
 
 def take_over(model: ShotRanker, folder: str | Path) -> str:
     """Give a network all of other weights that it has a place for, and return the digest of these."""
-    other, card = load_model(folder)
+    other, card = load_tensors(folder)
     ours = model.state_dict()
-    fit = {k: v for k, v in other.state_dict().items() if k in ours and v.shape == ours[k].shape}
-    words, others = model.config, other.config
+    fit = {k: v for k, v in other.items() if k in ours and v.shape == ours[k].shape}
+    words, others = model.config, card.model
     if words.backbone != others.backbone:
         raise RankerError(
             f"{folder}: are weights of a {others.backbone}, and no {words.backbone} can start from them"

@@ -16,6 +16,7 @@ from typing import Any
 import torch
 from safetensors import SafetensorError
 from safetensors.torch import load, save
+from torch import Tensor
 
 from .config import Card, ModelConfig, model_from_json, to_json
 from .engine import INT8
@@ -108,8 +109,8 @@ def load_card(folder: str | Path | None = None) -> Card:
         raise RankerError(f"{path}: is damaged or not a ranker's config{_GO_ON}") from error
 
 
-def load_model(folder: str | Path | None = None) -> tuple[ShotRanker, Card]:
-    """The model with its weights in float32, in evaluation mode; the shipped one without a folder."""
+def load_tensors(folder: str | Path | None = None) -> tuple[dict[str, Tensor], Card]:
+    """The weights themselves in float32, by name, of whatever shape of network they are; and their card."""
     folder = Path(folder or SHIPPED)
     card = load_card(folder)
     path = folder / WEIGHTS
@@ -120,12 +121,19 @@ def load_model(folder: str | Path | None = None) -> tuple[ShotRanker, Card]:
     if hashlib.sha256(content).hexdigest() != card.sha256:
         raise RankerError(f"{path}: is damaged, or not the file its {CONFIG} describes{_GO_ON}")
     try:
-        tensors = load(content)
+        return {k: v.float() for k, v in load(content).items()}, card
+    except (SafetensorError, ValueError, KeyError) as error:
+        raise RankerError(f"{path}: does not hold weights of this model{_GO_ON}") from error
+
+
+def load_model(folder: str | Path | None = None) -> tuple[ShotRanker, Card]:
+    """The model with its weights in float32, in evaluation mode; the shipped one without a folder."""
+    tensors, card = load_tensors(folder)
+    path = Path(folder or SHIPPED) / WEIGHTS
+    try:
         model = _empty_model(card.model)
-        missing, unexpected = model.load_state_dict(
-            {k: v.float() for k, v in tensors.items()}, strict=False, assign=True
-        )
-    except (SafetensorError, RuntimeError, ValueError, KeyError) as error:
+        missing, unexpected = model.load_state_dict(tensors, strict=False, assign=True)
+    except (RuntimeError, ValueError, KeyError) as error:
         raise RankerError(f"{path}: does not hold weights of this model{_GO_ON}") from error
     lacking = [name for name in missing if not name.endswith("num_batches_tracked")]
     if lacking or unexpected:

@@ -138,3 +138,23 @@ def test_pictures_are_scaled_to_what_the_network_was_taught_by(tmp_path: Path) -
     assert load_model(tmp_path)[0].config.inner == SIZE
     with pytest.raises(RankerError, match="sizes out of range"):
         model_from_json(to_json(large.config) | {"inner": 4 * SIZE})
+
+
+def test_a_training_starts_from_weights_of_a_network_that_is_no_more(tmp_path: Path) -> None:
+    """Heads of other widths than today's are left out, and the rest is taken over."""
+    other = ShotRanker(model_config(moments=True))
+    save_weights(tmp_path / "other", other)
+    path = tmp_path / "other" / "model.safetensors"
+    tensors = load_file(path)
+    tensors["liked.weight"], tensors["liked.bias"] = tensors["liked.weight"][:1], tensors["liked.bias"][:1]
+    save_file({k: v.contiguous() for k, v in tensors.items()}, path)
+    card = json.loads((tmp_path / "other" / "config.json").read_text("utf-8"))
+    card["sha256"] = hashlib.sha256(path.read_bytes()).hexdigest()
+    (tmp_path / "other" / "config.json").write_text(json.dumps(card), "utf-8")
+    with pytest.raises(RankerError, match="does not hold weights of this model"):
+        load_model(tmp_path / "other")
+    ours = ShotRanker(model_config(moments=True))
+    own = ours.liked.weight.clone()
+    assert take_over(ours, tmp_path / "other") == card["sha256"]
+    assert torch.equal(ours.liked.weight, own)
+    torch.testing.assert_close(ours.angle.weight, other.angle.weight.half().float())

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import json
 from dataclasses import replace
 from pathlib import Path
@@ -10,6 +11,7 @@ import numpy as np
 import pytest
 import torch
 from ranker_clips import FRAMES, SIZE, TINY, WORDS, clip, model_config, write_clips
+from safetensors.torch import load_file, save_file
 
 from ranker.config import Phase, model_from_json, to_json
 from ranker.data import Dataset, ShardWriter, Words

@@ -3,6 +3,8 @@ and L_o, of what is liked better."""
 
 from __future__ import annotations
 
+import math
+
 import torch
 from torch import Tensor
 from torch.nn import functional
@@ -10,6 +12,8 @@ from torch.nn import functional
 #: Bounds of L_o, deviations from the mean of good shots: a good one in six is above the fourth, one in thirty
 #: above the last.
 STEPS = (-1.0, -0.3, 0.3, 1.0, 1.6)
+#: Log odds that a good shot is above each, were they liked as normal deviations are spread.
+STEP_ODDS = tuple(-math.log(2 / math.erfc(step / math.sqrt(2)) - 1) for step in STEPS)
 _STRAIGHT = 0.3  # deviations: small ones count too, since takes of a shot differ by little
 
 

@@ -24,7 +24,7 @@ from .config import ModelConfig
 from .engine import quick_bfloat16
 from .guided import Guided, GuideNet
 from .guides import pairs
-from .losses import STEPS
+from .losses import STEP_ODDS, STEPS
 from .motion import NUMBERS
 from .vision import torchvision_models
 
@@ -214,8 +214,11 @@ class ShotRanker(nn.Module):
             return Output(logit, liked, *classes, average, contrast, told, marked, mapped)
 
     def margin(self, out: Output) -> Tensor:
-        """What shots are put in order by, [B]: log odds of being good, and how well they would be liked."""
-        return out.logit + self.config.liking * out.liked.mean(1)
+        """What shots are put in order by, [B]: log odds of being good, and how much greater than those of an
+        average good one the odds are that they are liked well, by the steps above the mean."""
+        upper = [k for k, step in enumerate(STEPS) if step > 0]
+        greater = out.liked[:, upper] - out.liked.new_tensor([STEP_ODDS[k] for k in upper])
+        return out.logit + self.config.liking * greater.mean(1)
 
     def _mapped(self, guides: Guided | None) -> _Mapped | None:
         if self.guided is None or guides is None:

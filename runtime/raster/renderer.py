@@ -147,8 +147,9 @@ class Renderer:
                     )
                 if probed is not None and pixels is not None and roles is not None:
                     here = Probed(probed.near[part], probed.role[part])
-                    seen, some = self._buffers["vis"], pixels[part]
-                    self._passes.probe(content, seen, roles[part], some, (width, height), here)
+                    self._passes.probe(
+                        content, self._buffers["vis"], roles[part], pixels[part], (width, height), here
+                    )
             except (MemoryError, RuntimeError) as error:
                 if part.stop - begin == 1 or not out_of_memory(error):
                     raise

@@ -338,8 +338,7 @@ class Passes:
         """What visibility buffers show cell by cell, into ``out`` (see ``types.GUIDES``)."""
         from .kernels import guides  # only where they are asked for: it is compiled then
 
-        a, up = loaded.arrays, self._backend.upload
-        role = up(np.ascontiguousarray(roles).reshape(-1))
+        a, role = loaded.arrays, self._backend.upload(np.ascontiguousarray(roles).reshape(-1))
         tables = (a["info"], a["surface_object"], a["head"], role, roles.shape[1])
         cells = self._backend.buffer((out.size,), np.uint8)
         guides.gather_guides(vis, *tables, len(out), *size, GUIDE_SIDE, cells)

@@ -111,7 +111,7 @@ class Renderer:
             guides = np.empty((count, GUIDE_SIDE, GUIDE_SIDE, len(GUIDES)), np.uint8)
         probed = None
         if pixels is not None:
-            check_pixels(pixels, count, (width, height))
+            check_pixels(pixels, count, (width, height), roles)
             probed = Probed(np.empty(pixels.shape, np.float32), np.empty(pixels.shape, np.uint8))
         chunk = self._chunk(content, hidden, (width, height))
         chunk = -(-count // max(-(-count // chunk), 1))  # as few of them as fit, of one size

@@ -52,8 +52,12 @@ def check_roles(roles: NDArray[np.uint8], count: int, objects: int) -> None:
         )
 
 
-def check_pixels(pixels: NDArray[np.int32], count: int, size: tuple[int, int]) -> None:
-    """Raises ValueError for pixels that are not some of every view."""
+def check_pixels(
+    pixels: NDArray[np.int32], count: int, size: tuple[int, int], roles: NDArray[np.uint8] | None
+) -> None:
+    """Raises ValueError for pixels that are not some of every view, or without the roles they are to tell."""
+    if roles is None:
+        raise ValueError("pixels: what they show is told by its role, and no roles are given")
     if pixels.ndim != 2 or len(pixels) != count or pixels.dtype != np.int32:
         raise ValueError(f"pixels: expected int32 [{count}, K], got {pixels.dtype} {pixels.shape}")
     if pixels.size and pixels.max() >= size[0] * size[1]:

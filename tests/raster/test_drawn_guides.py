@@ -94,6 +94,8 @@ def test_pixels_show_what_ids_and_depths_say(size: tuple[int, int]) -> None:
     bare = drawer.render(still(2), views, size, pixels=pixels, roles=roles, pictures=False).probed
     assert bare is not None
     np.testing.assert_array_equal(bare.near, frames.probed.near)
+    with pytest.raises(ValueError, match="no roles are given"):
+        drawer.render(still(2), views, size, pixels=pixels)
     for wrong in (pixels[:2], pixels.astype(np.int64), pixels + size[0] * size[1]):
         with pytest.raises(ValueError, match="pixels"):
             drawer.render(still(2), views, size, pixels=wrong, **asked)

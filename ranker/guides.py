@@ -42,11 +42,14 @@ POINTS = (
 #: no further than 3, and by how much nearer than the point (log) what is seen in its place is, 0 where that
 #: is the subject itself. Where the face points, to the right, up and away. Logarithms: of the focal length
 #: (mm) by the distance of the waist, of that distance (metres) and of the focal length. Metres of the camera
-#: above the eyes; radians it leans to the right; the logarithm of the seconds the shot lasts. In the mirror
+#: above the eyes; radians it leans to the right; the logarithm of the seconds the shot lasts. By how much
+#: nearer than the eyes (log) what is seen in their place is, the subject itself too, as a hand before the
+#: face; and 1 where walls of the set are left out, which the camera would stand behind, 0 else. In the mirror
 #: those of ``right`` change their sign.
 MARKS = (
     *(f"{what}{point}" for point in POINTS for what in ("right_", "up_", "covered_")),
     *("right_face", "up_face", "away_face", "size", "distance", "lens", "over", "right_roll", "seconds"),
+    *("before_eyes", "open"),
 )
 _TURNED = np.array([name.startswith("right") for name in MARKS])
 _HANDS = {"l": "r", "r": "l"}  # a left hand in the mirror is a right one

@@ -15,6 +15,7 @@ import pytest
 
 from ranker.data import MIRRORED, Dataset
 from ranker.errors import RankerError
+from ranker.guides import MARKS
 from vdsl.cinema.flaws import LEAST, MOST, flaws
 from vdsl.cinema.subject import Subject
 from vdsl.cinema.track import CameraTrack, camera_axes, look_at_rotation
@@ -72,14 +73,17 @@ def test_random_stories_pass_the_same_check_as_a_writers():
     cast = tuple(sorted(catalog.names("cast")))
     grounds = places(catalog)
     assert {p.set for p in grounds} >= {"apartment", "office", "suburb_street"}
-    seen = set()
+    seen, established = set(), 0
     for number in range(60):
         place = grounds[number % len(grounds)]
         text = random_story(catalog, place, random.Random(number), 5, cast)
         storyboard = check_source(Source("<story>", text)).storyboard
-        assert len(storyboard.lines) == 5
+        acted = [line for line in storyboard.lines if line.beats]
+        established += len(storyboard.lines) - len(acted)
+        assert len(acted) == 5
         seen |= {beat.action for line in storyboard.lines for beat in line.beats}
     assert len(seen) >= 15, seen
+    assert 15 < established < 45
 
 
 def test_no_set_and_nobody_is_on_both_sides() -> None:
@@ -283,7 +287,7 @@ def test_what_does_not_get_worse_is_no_negative(scenes: list[Scene], monkeypatch
 def test_a_training_set_is_half_good_and_goes_on_where_it_stopped(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("vdsl.pipeline.dataset.Troupe", partial(Troupe, lines=1, cameras=2))
+    monkeypatch.setattr("vdsl.pipeline.dataset.Troupe", partial(Troupe, lines=2, cameras=2))
     at_once = generate(tmp_path / "a", 1, seed=4, device="cpu", size=64, processes=1)
     assert generate(tmp_path / "a", 1, seed=4, device="cpu", size=64, processes=1) == at_once
     data = Dataset(tmp_path / "a")
@@ -305,7 +309,8 @@ def test_a_training_set_is_half_good_and_goes_on_where_it_stopped(
     guides = data.guides(np.arange(len(data)))
     assert guides is not None
     assert guides.maps.shape == (len(data), 8, 32, 32, 7)
-    shown = guides.maps[data.professional > 0.5, ..., 0].max((1, 2, 3))
+    somebody = np.abs(guides.marks[:, 0, MARKS.index("away_face")]) > 0  # a place has no face
+    shown = guides.maps[(data.professional > 0.5) & somebody, ..., 0].max((1, 2, 3))
     assert (shown > 200).mean() > 0.8  # whom a good clip is about is seen in it
     frames = data.clip(0, range(8), 64)
     assert frames.shape == (8, 64, 64, 3)
@@ -367,8 +372,11 @@ def test_hints_of_a_mirrored_take_are_mirrored() -> None:
     )
     camera = CameraProposal(**dict.fromkeys((f.name for f in fields(CameraProposal)), None))  # type: ignore[arg-type]
     measures = {name: bound for _, name, bound in (*LEAST, *MOST)} | {"jerk": 4.0, "headroom_error": 0.5}
+    measures |= {"interest": 1.0, "size_drift": 0.0, "angular_speed": 9.0}
     here, there = (hints_of(replace(camera, track=t, measures=measures)) for t in (track, other))
     assert here["jerk"] == 2.0
+    assert here["good_headroom"] == pytest.approx(np.log(0.05), abs=1e-3)
+    assert here["good_headroom"] < here["good_thirds"] < 0
     assert [k for k, v in here.items() if k.startswith("fault_") and v] == ["fault_headroom_error"]
     assert here["right_panning"] == pytest.approx(track.rotation[0, 2] - track.rotation[-1, 2], abs=1e-3)
     for name, value in here.items():

@@ -25,6 +25,7 @@ LEAST = (
 )
 MOST = (
     ("visibility", "foreground", 0.05),
+    ("visibility", "face_covered", 0.3),
     ("visibility", "backdrop_gap", 0.03),
     ("visibility", "walk_missed", 0.5),
     ("framing", "head_cut", 0.03),

@@ -1,4 +1,4 @@
-"""Whether one sees what hands do.
+"""Whether one sees what hands do, and whether they and the arms are in the way of the face.
 
 Assumes landmarks of a posed body. Hands that hang or swing beside it do nothing one has to see.
 """
@@ -10,11 +10,18 @@ from numpy.typing import NDArray
 
 from .framing import Array
 from .subject import Subject
-from .takes import Bools, Takes
+from .takes import Bools, Takes, mean_of
 from .vectors import dot, length
 
 _HANGS = 0.26  # of the standing height from the collar down, as far as idle hands are at least
 _CHEST = 0.075  # half of the trunk's breadth, of the standing height
+#: Of an arm: its radius, and what a hand reaches beyond the wrist, of the standing height.
+_ARM, _HAND = 0.026, 0.075
+#: Metres before the face at which a line of sight ends: less is the skin itself.
+_SKIN = 0.02
+#: Directions to the sides of where a face points, radians, and metres from it, from which one tells how
+#: little of it an action can cover.
+_AROUND, _AWAY = np.radians((-60.0, -30.0, 0.0, 30.0, 60.0)), 2.0
 #: Sizes that show hands at work.
 _SHOW_HANDS = ("waist", "thigh", "knees", "feet")
 
@@ -33,7 +40,7 @@ def hands_missed(takes: Takes, subject: Subject, at: NDArray[np.int64], camera: 
     at_work, seen = [], []
     for side, name in enumerate(("hand_l", "hand_r")):
         works = dot(marks[name] - marks["collar"], down) < _HANGS * subject.height
-        before = _apart(camera, marks[name][None], marks["collar"][None], trunk[None])
+        before = _apart(camera, 0.93 * (marks[name][None] - camera), marks["collar"][None], trunk[None])
         at_work.append(works)
         seen.append(works[None] & shown[..., side] & (before > _CHEST * subject.height))
     asked = (at_work[0] | at_work[1])[None] & takes.window
@@ -43,14 +50,50 @@ def hands_missed(takes: Takes, subject: Subject, at: NDArray[np.int64], camera: 
     return np.where(sizes & asked.any(axis=1), missed, 0.0)
 
 
-def _apart(camera: Array, hand: Array, collar: Array, trunk: Array) -> Array:
-    """Least distance [P, F] between the line from the camera to a hand, but for its end, and the trunk."""
-    ray = 0.93 * (hand - camera)
-    start = camera - collar
-    a, e, f = dot(ray, ray), np.maximum(dot(trunk, trunk), 1e-9), dot(trunk, start)
-    b, c = dot(ray, trunk), dot(ray, start)
+def face_covered(takes: Takes, subject: Subject, at: NDArray[np.int64], camera: Array) -> Array:
+    """Share [P] of a person's face, while the window is open, that their own arms and hands hide, beyond what
+    they hide from everywhere before it: who buries the face in the hands cannot be seen otherwise.
+
+    Asked of eyes and nose. 0 for what is no person.
+    """
+    if subject.arms is None:
+        return np.zeros(len(camera))
+    arms, face = subject.arms[at], subject.face[at]
+    points = [subject.landmarks[name][at] for name in ("eyes", "nose")]
+    cos, sin = np.cos(_AROUND)[:, None], np.sin(_AROUND)[:, None]
+    around = [cos * face[:, 0] - sin * face[:, 1], sin * face[:, 0] + cos * face[:, 1]]
+    level = np.stack([*around, np.broadcast_to(face[:, 2], around[0].shape)], axis=-1)
+    before = points[0] + _AWAY * level
+    least = _behind_arms(before, points, arms, subject.height).min(axis=0)  # [F]
+    hidden = _behind_arms(camera, points, arms, subject.height)
+    return mean_of(np.maximum(hidden - least, 0.0), takes.window)
+
+
+def _behind_arms(camera: Array, points: list[Array], arms: Array, height: float) -> Array:
+    """Share [P, F] of points [F, 3] that a body's arms [F, 2, 3, 3] hide from cameras [P, F, 3]."""
+    upper, lower = arms[:, :, 1] - arms[:, :, 0], arms[:, :, 2] - arms[:, :, 1]
+    reach = 1.0 + _HAND * height / np.maximum(length(lower), 1e-6)
+    limbs = ((arms[:, :, 0], upper), (arms[:, :, 1], reach[..., None] * lower))
+    out = np.zeros(camera.shape[:2])
+    for point in points:
+        ray = point - camera
+        ray = ray * np.maximum(1.0 - _SKIN / np.maximum(length(ray), 1e-6), 0.0)[..., None]
+        near = [
+            _apart(camera, ray, start[None, :, side], along[None, :, side]) < _ARM * height
+            for start, along in limbs
+            for side in (0, 1)
+        ]
+        out += np.any(near, axis=0) / len(points)
+    return out
+
+
+def _apart(camera: Array, ray: Array, begin: Array, limb: Array) -> Array:
+    """Least distance [P, F] between lines of sight [P, F, 3] from cameras and a limb from where it begins."""
+    start = camera - begin
+    a, e, f = dot(ray, ray), np.maximum(dot(limb, limb), 1e-9), dot(limb, start)
+    b, c = dot(ray, limb), dot(ray, start)
     spread = np.maximum(a * e - b * b, 1e-9)
     along = np.clip((b * f - c * e) / spread, 0.0, 1.0)  # of the ray, where lines are nearest
-    down = np.clip((b * along + f) / e, 0.0, 1.0)  # of the trunk
+    down = np.clip((b * along + f) / e, 0.0, 1.0)  # of the limb
     along = np.clip((b * down - c) / np.maximum(a, 1e-9), 0.0, 1.0)
-    return length(start + along[..., None] * ray - down[..., None] * trunk)
+    return length(start + along[..., None] * ray - down[..., None] * limb)

@@ -18,7 +18,7 @@ from runtime.world import World
 from . import space
 from .composition import framing, size_error
 from .framing import Array
-from .gestures import hands_missed
+from .gestures import face_covered, hands_missed
 from .score import geometry_score as geometry_score
 from .sight import backdrop_gaps, clear_lines, clear_of_people, hidden_walls
 from .subject import SIGHT, Subject
@@ -47,6 +47,7 @@ MEASURES = (
     "empty",  # share of the time in which neither any of the subject nor any of those points is in the frame
     "walk_missed",  # share of the way the subject goes on which nothing of it is seen; 0 for a step or two
     "hands_missed",  # share of the time hands are at work in which neither is seen; 0 for close-ups
+    "face_covered",  # share of the face that the subject's own arms hide, beyond what they have to
     "foreground",  # share of the picture covered by something much nearer than the subject
     "face",  # cosine between face and direction to the camera: 1 frontal, 0 profile, −1 from behind
     "clearance",  # metres from the camera to the nearest solid or person, at most 1
@@ -101,6 +102,7 @@ def measure(takes: Takes, subject: Subject, world: World, fps: float) -> Measure
     in_sight = inside[:, :, sight_index] & seen
     values["walk_missed"] = _missed(points[:, names.index("waist")], in_sight)
     values["hands_missed"] = hands_missed(takes, subject, at, camera, in_sight[:, :, hands])
+    values["face_covered"] = face_covered(takes, subject, at, camera)
     shown = _shown(takes, world, at, camera, axes, hidden, others)
     values["interest"] = _interest(takes, shown)
     somebody = in_sight.any(axis=-1) | inside[:, :, names.index("eyes")] | shown.any(axis=-1)

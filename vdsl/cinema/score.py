@@ -25,6 +25,7 @@ WEIGHTS = {
 PENALTIES = {
     "backdrop_gap": 0.5,
     "foreground": 0.6,
+    "face_covered": 0.4,
     "empty": 0.6,
     "walk_missed": 0.4,
     "head_cropped": 0.2,

@@ -31,6 +31,7 @@ class Subject:
     members: everybody a shot of several has to show, who acts first of all; () for a single one
     via: float64 [T, 3], the head over whose shoulder the camera looks, or the eyes it looks through
     via_face: float64 [T, 3], unit direction its face points
+    arms: float64 [T, 2, 3, 3], shoulder, elbow and wrist of the left arm and the right; None without any
     """
 
     name: str
@@ -43,6 +44,7 @@ class Subject:
     members: tuple[Subject, ...] = ()
     via: NDArray[np.float64] | None = None
     via_face: NDArray[np.float64] | None = None
+    arms: NDArray[np.float64] | None = None
 
     @property
     def frames(self) -> int:
@@ -66,7 +68,9 @@ class Subject:
         moved = {name: path + shift for name, path in self.landmarks.items()}
         members = tuple(one.shifted(up) for one in self.members)
         via = None if self.via is None else self.via + shift
-        return replace(self, position=self.position + shift, landmarks=moved, members=members, via=via)
+        arms = None if self.arms is None else self.arms + shift
+        position = self.position + shift
+        return replace(self, position=position, landmarks=moved, members=members, via=via, arms=arms)
 
     def travel(self) -> float:
         """Metres from where it starts to the farthest it gets from there on the floor."""
@@ -121,9 +125,10 @@ def person(
         "hand_r": joints("hand_r"),
     }
     face = world[:, JOINT["head"], :3, 0].astype(np.float64)
-    return Subject(
-        name, "person", h, np.asarray(position, float), np.asarray(heading, float), landmarks, face
-    )
+    limbs = [[JOINT[f"{joint}_{side}"] for joint in ("upperarm", "forearm", "hand")] for side in "lr"]
+    arms = world[:, limbs][..., :3, 3].astype(np.float64)
+    place = np.asarray(position, float), np.asarray(heading, float)
+    return Subject(name, "person", h, *place, landmarks, face, arms=arms)
 
 
 def group(people: Sequence[Subject]) -> Subject:
@@ -145,6 +150,7 @@ def group(people: Sequence[Subject]) -> Subject:
         landmarks=landmarks,
         face=face,
         members=tuple(people),
+        arms=None,
     )
 
 

@@ -38,7 +38,10 @@ def qualities(measures: Measures) -> dict[str, Array]:
     m = {k: np.asarray(v, float) for k, v in measures.items()}
     turned = np.clip((m["face"] + 0.75) / 1.4, 0.0, 1.0)  # from behind to three-quarter and frontal
     return {
-        "visibility": m["visibility"] * m["head_visible"] * (0.25 + 0.5 * turned + 0.25 * m["interest"]),
+        "visibility": m["visibility"]
+        * m["head_visible"]
+        * (1.0 - 0.6 * m["face_covered"])
+        * (0.25 + 0.5 * turned + 0.25 * m["interest"]),
         "framing": m["in_frame"] * _near(m["size_drift"], 0.9) * (1.0 - m["foreground"]) * (1.0 - m["empty"]),
         "headroom": _near(m["headroom_error"], 0.12),
         "lead_room": np.clip(0.75 + 1.5 * m["lead_room"], 0.0, 1.0),

@@ -85,7 +85,9 @@ class Camerawork:
         assert drawn.guides is not None
         assert drawn.probed is not None
         frames = drawn.color.reshape(len(cameras), len(which), *drawn.color.shape[1:])
-        return Seen(frames, guides_of(drawn.guides, drawn.probed, at, views.camera, places, which, SEGMENTS))
+        opened = [bool(c.hidden_walls.any()) for c in cameras]
+        told = guides_of(drawn.guides, drawn.probed, at, views.camera, places, opened, which, SEGMENTS)
+        return Seen(frames, told)
 
     def judge_ids(
         self,

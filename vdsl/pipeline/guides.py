@@ -119,13 +119,15 @@ def guides_of(
     at: Pointed,
     camera: Camera,
     places: Sequence[Places],
+    opened: Sequence[bool],
     which: Sequence[int],
     whole: int,
 ) -> Guides:
     """Guides of P shots by k frames each.
 
     drawn: uint8 [P k, SIDE, SIDE, 6] of the renderer; probed: [P k, points], what it saw ``at`` the points
-    camera: of these P k pictures; places: [P] in these k frames; which: the k frames they are, of ``whole``
+    camera: of these P k pictures; places: [P] in these k frames; opened: [P], whether walls are left out
+    which: the k frames they are, of ``whole``
     """
     shots = len(places)
     count = len(which)
@@ -138,10 +140,12 @@ def guides_of(
     flow = np.full((shots, len(matched), FLOW, FLOW, 2), np.nan, np.float16)
     if count == whole:
         flow[:] = _flow(_nearness(maps[..., CHANNELS.index("nearness")]), camera, shots, matched)
-    return Guides(maps, flow, _marks(probed, at, camera, places))
+    return Guides(maps, flow, _marks(probed, at, camera, places, opened))
 
 
-def _marks(probed: Probed, at: Pointed, camera: Camera, places: Sequence[Places]) -> NDArray[np.float16]:
+def _marks(
+    probed: Probed, at: Pointed, camera: Camera, places: Sequence[Places], opened: Sequence[bool]
+) -> NDArray[np.float16]:
     """float16 [P, T, len(MARKS)]; probed: what is seen where the points are, [P T, points]."""
     shots, near = len(places), probed.near
     count = len(near) // shots
@@ -152,15 +156,16 @@ def _marks(probed: Probed, at: Pointed, camera: Camera, places: Sequence[Places]
     inside, place = at.pixels >= 0, at.place
     own = np.log(FAR / np.maximum(at.depth, NEAREST, where=inside, out=np.ones_like(at.depth)))
     seen = np.log(FAR * np.clip(near, 1 / FAR, 1 / NEAREST))
-    covered = np.where(near > 0, seen, -1.0) - own
-    covered = np.where(probed.role == SUBJECT, 0.0, covered)  # nobody stands in their own way
-    told = np.stack([place[..., 0], place[..., 1], np.where(inside, covered, np.nan)], axis=-1)
+    before = np.where(inside, np.where(near > 0, seen, -1.0) - own, np.nan)
+    covered = np.where(inside & (probed.role == SUBJECT), 0.0, before)  # nobody stands in their own way
+    told = np.stack([place[..., 0], place[..., 1], covered], axis=-1)
     waist, eyes = (points[:, POINTS.index(name)] for name in ("waist", "eyes"))
     away = np.maximum(np.linalg.norm(waist - position, axis=-1), 0.2)
     lean = np.arcsin(np.clip(-axes[:, 0, 2], -1, 1))
     seconds = np.repeat([p.seconds for p in places], count)
     alone = [*np.einsum("nac,nc->an", axes, face), np.log(focal / away), np.log(away), np.log(focal)]
     alone += [np.clip(position[:, 2] - eyes[:, 2], -_FARTHEST, _FARTHEST), lean, np.log(seconds)]
+    alone += [before[:, POINTS.index("eyes")], np.repeat(np.asarray(opened, float), count)]
     marks = np.concatenate([told.reshape(len(told), -1), np.stack(alone, axis=-1)], axis=1)
     assert marks.shape[1] == len(MARKS)
     return marks.reshape(shots, count, len(MARKS)).astype(np.float16)

@@ -20,6 +20,9 @@ from ..library import Catalog
 
 _TIMES = ("dawn", "day", "dusk", "night")
 _NAMES = ("anna", "ben")
+#: How many stories have a shot of the place, and how many lines are of somebody going somewhere, beside those
+#: that are by lot.
+_ESTABLISHED, _GOING = 0.5, 0.12
 _TEST_SHARE = 0.2
 #: How often a camera has a movement of the paper, one beyond it, or two at once.
 _MOVEMENT_ODDS = (10, 4, 1)
@@ -101,8 +104,12 @@ def random_story(
         for a in (catalog.get("action", n) for n in sorted(catalog.names("action")))
         if isinstance(a, ActionDef)
     ]
-    for _ in range(lines):
-        story, other = _story_line(place, rng, actions)
+    going = [a for a in actions if a.group == "going"]
+    established = rng.randrange(lines) if rng.random() < _ESTABLISHED else None
+    for number in range(lines):
+        if number == established:
+            script.extend(("", *dict.fromkeys(_establishing(rng) for _ in range(cameras)), ""))
+        story, other = _story_line(place, rng, going if rng.random() < _GOING else actions)
         shots = dict.fromkeys(_camera(rng, other) for _ in range(cameras))
         script.extend((f"{story}  {next(iter(shots))}", *(f"    {camera}" for camera in list(shots)[1:])))
     return "\n".join(script) + "\n"
@@ -137,6 +144,14 @@ def _camera(rng: random.Random, other: str) -> str:
         view = rng.choice((" two-shot", f" ots {other}"))
         scale = rng.choice(("medium-close-up", "medium", "cowboy")) if "ots" in view else scale
     return f"/ ({movement} {scale} {angle}{view})"
+
+
+def _establishing(rng: random.Random) -> str:
+    """A camera of the place itself."""
+    movement = rng.choice(
+        rng.choice([words for name, words in MOVEMENT_FAMILIES.items() if name != "follow"])
+    )
+    return f"/ ({movement} {rng.choice(('wide', 'full'))} {rng.choice(ANGLES)})"
 
 
 def _target(place: Place, rng: random.Random, action: ActionDef, other: str) -> str | None:

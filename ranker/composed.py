@@ -16,6 +16,7 @@ from .guides import FARTHEST, MARKS, NEAREST, POINTS, SIDE
 _SHARP = 40.0  # how fast a point goes from in the frame to out of it, by half frames
 _HARD = 12.0  # how sharp bounds of nearness (log) are
 _CLEAR, _STEEP = 0.25, 25.0  # metres nearer than a point from which something covers it; how sharp that is
+_FACE, _SKIN = 0.07, 60.0  # the same of the subject itself before its own eyes, as a hand
 #: Means and deviations by which marks come near 0 and 1; the others are so of themselves.
 _COMMON = {"size": (3.2, 0.7), "lens": (3.8, 0.35), "distance": (0.7, 0.7), "seconds": (1.4, 0.6)}
 #: Places across the frame, half frames to the right and down, that are asked for what is much nearer than the
@@ -30,7 +31,7 @@ _OTHERS = [POINTS.index(p) for p in ("other_1", "other_2")]
 
 #: Numbers of :func:`composed` of a frame: marks, which points there are, composition, looks, what is seen,
 #: and of each point whether it is covered, and whether it is in the frame.
-COMPOSED = len(MARKS) + len(POINTS) + 10 + len(_LOOKS) + len(_NEARER) + 7 + 2 * len(POINTS)
+COMPOSED = len(MARKS) + len(POINTS) + 12 + len(_LOOKS) + len(_NEARER) + 7 + 2 * len(POINTS)
 #: Which of them says whether the eyes are in the frame.
 EYES_INSIDE = COMPOSED - len(POINTS) + POINTS.index("eyes")
 #: Numbers that :func:`over_time` makes of each of a frame's.
@@ -55,8 +56,10 @@ def composed(told: Tensor, nearness: Tensor) -> Tensor:
     inside = torch.sigmoid(_SHARP * (1 - right.abs())) * torch.sigmoid(_SHARP * (1 - up.abs())) * there
     ahead = (1 - (-nearer.nan_to_num(-1.0)).exp()) * marks["distance"].exp().unsqueeze(-1)  # metres
     covered = torch.sigmoid(_STEEP * (ahead - _CLEAR)) * inside
+    own = (1 - (-marks["before_eyes"].nan_to_num(-1.0)).exp()) * marks["distance"].exp()
     at = dict(zip(POINTS, up.unbind(-1), strict=True))
-    sideways = right[..., POINTS.index("eyes")]
+    eyes = POINTS.index("eyes")
+    sideways = right[..., eyes]
     composition = [
         -marks["right_face"] * sideways,  # room ahead of the face
         ((1 - at["eyes"]) / 2 - 1 / 3).abs(),  # off the upper third
@@ -68,6 +71,8 @@ def composed(told: Tensor, nearness: Tensor) -> Tensor:
         (-1 - at["feet"]).clamp_min(0),
         at["crown"] - at["feet"],
         at["crown"] - at["chin"],
+        own.clamp(0, 1),
+        torch.sigmoid(_SKIN * (own - _FACE)) * inside[..., eyes],
     ]
     looks, share = _foreground(nearness, marks["distance"])
     parts = [torch.stack(common, -1).nan_to_num(), there.float(), torch.stack(composition, -1)]

@@ -133,6 +133,7 @@ CPU = TrainConfig(
     contrast_weight=0.25,
     hint_weight=3.0,
     order_weight=4.0,
+    unguided=0.5,
     smoothing=0.02,
 )
 RECIPES = {"paper": PAPER, "cpu": CPU}

@@ -14,6 +14,7 @@ from __future__ import annotations
 import hashlib
 import json
 import os
+import warnings
 from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass, field
 from functools import cached_property
@@ -32,6 +33,7 @@ SCHEMA = "vds.dataset/1"
 SHARD = 64
 #: Hints of such names change their sign in a mirrored picture.
 MIRRORED = "right"
+_LEAST = 0.2  # of the deviation of all clips, that a hint has at least among positives
 
 
 @dataclass(frozen=True)
@@ -265,14 +267,18 @@ class Dataset:
     @cached_property
     def hints(self) -> tuple[tuple[str, ...], NDArray[np.float32]]:
         """What whoever made the set knows of its clips in numbers (``hints`` of a label's ``about``): their
-        names, and float32 [N, K], scaled to mean 0 and deviation 1 each, within 3; NaN where not known.
+        names, and float32 [N, K], NaN where not known: in deviations from the mean of positives, asinh of
+        them, so that what tells good ones apart is not lost beside how far off bad ones are.
         """
-        return _standard([label.about.get("hints") or {} for label in self.labels], ())
+        return _standard(
+            [label.about.get("hints") or {} for label in self.labels], (), self.professional > 0.5
+        )
 
     @cached_property
     def frame_hints(self) -> tuple[tuple[str, ...], NDArray[np.float32]]:
         """The same of single frames (``frames`` of a label's ``about``): float32 [N, T, K]."""
-        return _standard([label.about.get("frames") or {} for label in self.labels], (self.frames,))
+        told = [label.about.get("frames") or {} for label in self.labels]
+        return _standard(told, (self.frames,), self.professional > 0.5)
 
     @cached_property
     def professional(self) -> NDArray[np.float32]:
@@ -348,7 +354,7 @@ class Dataset:
 
 
 def _standard(
-    told: list[dict[str, Any]], shape: tuple[int, ...]
+    told: list[dict[str, Any]], shape: tuple[int, ...], good: NDArray[np.bool_]
 ) -> tuple[tuple[str, ...], NDArray[np.float32]]:
     """Numbers of ``shape`` by name as a table of all names [N, *shape, K], scaled as ``hints``."""
     names = tuple(sorted({name for hints in told for name in hints}))
@@ -361,10 +367,16 @@ def _standard(
         return (), np.zeros((len(told), *shape, 0), np.float32)
     table = np.moveaxis(table, 1, -1)
     across = tuple(range(table.ndim - 1))
-    middle = np.nanmean(table, across)
-    middle[[name.startswith(MIRRORED) for name in names]] = 0.0  # so that a mirrored one is the negative
-    spread = np.sqrt(np.nanmean((table - middle) ** 2, across))
-    return names, np.clip((table - middle) / np.maximum(spread, 1e-6), -3, 3).astype(np.float32)
+    usual = table[good] if good.any() else table
+    with warnings.catch_warnings():  # what is known of no good one counts as what is known of all
+        warnings.simplefilter("ignore", RuntimeWarning)
+        middle = np.nanmean(usual, across)
+        middle = np.where(np.isfinite(middle), middle, np.nanmean(table, across))
+        signed = np.array([name.startswith(MIRRORED) for name in names])
+        middle = np.where(signed, 0.0, middle)  # so that a mirrored one is the negative
+        own, every = (np.sqrt(np.nanmean((t - middle) ** 2, across)) for t in (usual, table))
+    spread = np.maximum(np.nan_to_num(own), _LEAST * every)
+    return names, np.arcsinh((table - middle) / np.maximum(spread, 1e-6)).astype(np.float32)
 
 
 def scaled(frames: NDArray[np.uint8], size: int) -> NDArray[np.uint8]:

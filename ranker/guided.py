@@ -18,6 +18,7 @@ from .guides import CHANNELS, FLOW, SIDE, Guides, pairs
 
 _MAPS, _WIDE, _FRAME = 128, 256, 160  # numbers that describe the maps of a frame, and all of a frame
 _PAIR, _MOVED = 64, 256  # and a pair of frames, all pairs
+_LEAST = 0.1  # of the deviation of all shots, that good ones are taken to have at least
 _FINE = 20.0  # by what motion is multiplied, so that slow ones are seen
 
 
@@ -46,6 +47,32 @@ class Guided(NamedTuple):
         return (self.maps[..., CHANNELS.index("rise")] != 0).flatten(1).any(1)
 
 
+class Evened(nn.Module):
+    """Numbers [..., D] in deviations from those of good shots, the more compressed the further off.
+
+    What tells good shots apart is small beside how far off bad ones are: scaled by all of them, or cut off,
+    one or the other would be lost.
+    """
+
+    middle: Tensor
+    spread: Tensor
+
+    def __init__(self, count: int) -> None:
+        super().__init__()
+        self.register_buffer("middle", torch.zeros(count))
+        self.register_buffer("spread", torch.ones(count))
+
+    def fit(self, good: Tensor, every: Tensor) -> None:
+        """Take means and deviations of numbers [N, D] of good shots; where these are all the same, of every
+        one's."""
+        self.middle.copy_(good.mean(0))
+        spread = torch.maximum(good.std(0, correction=0), _LEAST * every.std(0, correction=0))
+        self.spread.copy_(torch.where(spread > 1e-6, spread, torch.ones_like(spread)))
+
+    def forward(self, numbers: Tensor) -> Tensor:
+        return torch.asinh((numbers - self.middle) / self.spread)
+
+
 class GuideNet(nn.Module):
     """A description of every frame by its maps and marks, and of a shot by these and the camera's motion.
 
@@ -60,7 +87,7 @@ class GuideNet(nn.Module):
             steps += [nn.Conv2d(before, after, 3, 2, 1), nn.GroupNorm(8, after), nn.ReLU()]
         last = widths[-1] * (SIDE // 2 ** (len(widths) - 1)) ** 2
         self.maps = nn.Sequential(*steps, nn.Flatten(), nn.Linear(last, _MAPS), nn.ReLU())
-        self.evened = nn.BatchNorm1d(COMPOSED, affine=False)  # a tenth may be much for one number
+        self.evened = Evened(COMPOSED)  # a tenth may be much for one number
         wide = nn.Sequential(nn.Linear(_MAPS + COMPOSED, _WIDE), nn.ReLU())
         self.marks = nn.Sequential(*wide, nn.Linear(_WIDE, _FRAME), nn.ReLU())
         self.pairs = nn.Sequential(
@@ -70,6 +97,13 @@ class GuideNet(nn.Module):
         self.moved = nn.Sequential(nn.Linear(_PAIR * len(pairs(frames)), _MOVED), nn.ReLU(), nn.Dropout(0.1))
         self.frame, self.shot = _FRAME + COMPOSED, SUMMED * (_FRAME + COMPOSED) + _MOVED
 
+    @torch.no_grad()
+    def fit(self, seen: Guided, good: Tensor) -> None:
+        """Take what is usual from guides of shots of which some are good, bool [B]."""
+        numbers = composed(seen.marks, seen.maps[..., CHANNELS.index("nearness")])
+        chosen = good if good.any() else torch.ones_like(good)
+        self.evened.fit(numbers[chosen].flatten(0, 1), numbers.flatten(0, 1))
+
     def forward(self, seen: Guided) -> tuple[Tensor, Tensor]:
         """Descriptions of frames float32 [B, T, frame], and of shots [B, shot]."""
         batch, count = seen.maps.shape[:2]
@@ -77,7 +111,7 @@ class GuideNet(nn.Module):
         with torch.autocast(maps.device.type, enabled=False):
             marks = composed(seen.marks, seen.maps[..., CHANNELS.index("nearness")])
             inside = marks[..., EYES_INSIDE]
-            marks = self.evened(marks.flatten(0, 1)).view(batch, count, COMPOSED).clamp(-5, 5)
+            marks = self.evened(marks)
         both = torch.cat([self.maps(maps).view(batch, count, _MAPS), marks], 2)
         frames = torch.cat([self.marks(both), marks], 2)
         flow = seen.flow.flatten(0, 1).movedim(-1, 1).float().nan_to_num()

@@ -32,7 +32,10 @@ from .vision import torchvision_models
 PIXEL_MEAN = (0.485, 0.456, 0.406)
 PIXEL_STD = (0.229, 0.224, 0.225)
 #: How the names of parameters begin that only guides pass through.
-OF_GUIDES = ("guided.", "gathered.", "judged.", "reader_guided.", "marker_guided.")
+OF_GUIDES = (
+    *("guided.", "gathered.", "judged.", "straight.", "reader_guided.", "marker_guided."),
+    "reasons_guided.",
+)
 
 
 class Output(NamedTuple):
@@ -57,13 +60,13 @@ class Output(NamedTuple):
     mapped: Tensor
 
 
-class _Mapped(NamedTuple):
-    """What is made of guides: of frames [B, T, frame], of shots [B, guides]; whether there were any [B,
-    1]."""
+class _Judgement(NamedTuple):
+    """judged [B, judgements]: logit, steps of liking, classes, one after the other; told [B, measures]
+    and marked [B, T, marks], what that is said by"""
 
-    frames: Tensor
-    shot: Tensor
-    known: Tensor
+    judged: Tensor
+    told: Tensor
+    marked: Tensor
 
 
 class Pool(nn.Module):
@@ -106,7 +109,8 @@ class ShotRanker(nn.Module):
         #: Numbers that describe a frame: [N, described] is what the backbone makes of N frames.
         self.described = width * (3 if config.moments else 1)
         sizes = (len(config.movements), len(config.scales), len(config.angles))
-        fused, judgements = 3 * self.described, 1 + len(STEPS) + sum(sizes)
+        self._sizes = (1, len(STEPS), *sizes)
+        fused, judgements = 3 * self.described, sum(self._sizes)
         self.professional, self.liked = nn.Linear(fused, 1), nn.Linear(fused, len(STEPS))
         nn.init.zeros_(self.liked.weight)  # of sets without opinions it learns nothing
         self.movement, self.scale, self.angle = (nn.Linear(fused, n) for n in sizes)
@@ -125,9 +129,7 @@ class ShotRanker(nn.Module):
                 self.reader_moved = nn.Linear(config.motion, config.measures, bias=False)
             if config.marks:
                 self.marker = nn.Linear(self.described, config.marks)
-            known = config.measures + 3 * config.marks
-            reasons = nn.Sequential(nn.Linear(known, 128), nn.ReLU(), nn.Dropout(0.2))
-            self.reasons = nn.Sequential(*reasons, nn.Linear(128, judgements))
+            self.reasons = _reasons(config, judgements)
         self.guided: GuideNet | None = None
         if config.guides:
             self.guided = GuideNet(config.frames)
@@ -136,8 +138,14 @@ class ShotRanker(nn.Module):
             last = nn.Sequential(nn.Linear(wide, config.guides), nn.ReLU(), nn.Dropout(0.1))
             self.gathered = nn.Sequential(*gathered, *last)
             self.judged = nn.Linear(config.guides, judgements)
+            # Much of film grammar is a weighted sum of what is known already.
+            self.straight = nn.Linear(self.guided.shot, judgements + config.measures, bias=False)
+            nn.init.zeros_(self.straight.weight)
+            # What pictures add where guides are known: nothing, until that has proved to be of use.
+            self.trusted = nn.Parameter(torch.zeros(judgements))
             if config.measures:
                 self.reader_guided = nn.Linear(config.guides, config.measures)
+                self.reasons_guided = _reasons(config, judgements)
             if config.marks:
                 self.marker_guided = nn.Linear(self.guided.frame, config.marks)
 
@@ -175,43 +183,63 @@ class ShotRanker(nn.Module):
         """
         with torch.autocast(features.device.type, enabled=False):
             average = features[:, :, : self.width].mean(1)
-            fused = fuse(features, times) if pictures else features.new_zeros(len(features), 0)
-            heads = (self.professional, self.liked, self.movement, self.scale, self.angle)
-            sizes = [head.out_features for head in heads]
-            judged = fused.new_zeros(len(fused), sum(sizes))
-            if pictures:
-                judged = torch.cat([head(fused) for head in heads], 1)
-            seen, maps = self._seen(moved), self._mapped(guides)
-            if seen is not None:
-                more = torch.cat([self.professional_moved(seen), self.movement_moved(seen)], 1)
-                judged = judged + functional.pad(more, (0, judged.shape[1] - more.shape[1]))
-            if maps is not None:
-                judged = judged + self.judged(maps.shot) * maps.known
-            told, marked = fused.new_zeros(len(fused), 0), features.new_zeros(*features.shape[:2], 0)
-            mapped = marked
-            if self.reader is not None:
-                told = self.reader(fused) if pictures else fused.new_zeros(len(fused), self.config.measures)
-                if seen is not None:
-                    told = told + self.reader_moved(seen)
-                if maps is not None:
-                    told = told + self.reader_guided(maps.shot) * maps.known
-                known = [told]
-                if self.config.marks:
-                    if pictures:
-                        marked = self.marker(features)
-                    else:
-                        marked = features.new_zeros(*features.shape[:2], self.config.marks)
-                    over_time = fuse(marked, times)
-                    if maps is not None and guides is not None:
-                        mapped = self.marker_guided(maps.frames)
-                        over_time = torch.where(maps.known > 0, fuse(mapped, guides.times), over_time)
-                    known.append(over_time)
-                judged = judged + self.reasons(torch.cat(known, 1))
-            professional, liked, movement, scale, angle = judged.split(sizes, 1)
+            shown = self._by_pictures(features, times, moved, pictures)
+            judged, told, mapped = shown.judged, shown.told, features.new_zeros(*features.shape[:2], 0)
+            if self.guided is not None and guides is not None:
+                by_guides = self._by_guides(self.guided, guides)
+                known, mapped = guides.known.unsqueeze(1), by_guides.marked
+                both = by_guides.judged + self.trusted * judged if pictures else by_guides.judged
+                judged = torch.where(known, both, judged)
+                told = torch.where(known, by_guides.told, told)
+            professional, liked, movement, scale, angle = judged.split(self._sizes, 1)
             contrast = functional.normalize(self.contrast(average), dim=1)
-            logit = professional.squeeze(1)
             classes = (movement, scale, angle)
-            return Output(logit, liked, *classes, average, contrast, told, marked, mapped)
+            logit = professional.squeeze(1)
+            return Output(logit, liked, *classes, average, contrast, told, shown.marked, mapped)
+
+    def _by_pictures(
+        self, features: Tensor, times: Tensor, moved: Tensor | None, pictures: bool
+    ) -> _Judgement:
+        """What is said of shots by features of their pictures and how these move."""
+        batch, count = times.shape
+        judged, told = features.new_zeros(batch, sum(self._sizes)), features.new_zeros(batch, 0)
+        fused = fuse(features, times) if pictures else features.new_zeros(batch, 0)
+        marked = features.new_zeros(batch, count, self.config.marks)
+        if pictures:
+            heads = (self.professional, self.liked, self.movement, self.scale, self.angle)
+            judged = torch.cat([head(fused) for head in heads], 1)
+        seen = self._seen(moved)
+        if seen is not None:
+            more = torch.cat([self.professional_moved(seen), self.movement_moved(seen)], 1)
+            judged = judged + functional.pad(more, (0, judged.shape[1] - more.shape[1]))
+        if self.reader is not None:
+            told = self.reader(fused) if pictures else features.new_zeros(batch, self.config.measures)
+            if seen is not None:
+                told = told + self.reader_moved(seen)
+            if self.config.marks and pictures:
+                marked = self.marker(features)
+            judged = judged + self.reasons(torch.cat([told, *self._over_time(marked, times)], 1))
+        return _Judgement(judged, told, marked)
+
+    def _by_guides(self, guided: GuideNet, guides: Guided) -> _Judgement:
+        """What is said of shots by their guides."""
+        kind = guides.maps.device.type
+        with torch.autocast(kind, torch.bfloat16, enabled=self.training and quick_bfloat16(kind)):
+            frames, shot = guided(guides)
+        gathered = self.gathered(shot)
+        judged, told = self.straight(shot).split((sum(self._sizes), self.config.measures), 1)
+        judged = judged + self.judged(gathered)
+        marked = frames.new_zeros(*frames.shape[:2], self.config.marks)
+        if self.config.measures:
+            told = told + self.reader_guided(gathered)
+            if self.config.marks:
+                marked = self.marker_guided(frames)
+            known = torch.cat([told, *self._over_time(marked, guides.times)], 1)
+            judged = judged + self.reasons_guided(known)
+        return _Judgement(judged, told, marked)
+
+    def _over_time(self, marked: Tensor, times: Tensor) -> list[Tensor]:
+        return [fuse(marked, times)] if self.config.marks else []
 
     def margin(self, out: Output) -> Tensor:
         """What shots are put in order by, [B]: log odds of being good, and how much greater than those of an
@@ -220,20 +248,19 @@ class ShotRanker(nn.Module):
         greater = out.liked[:, upper] - out.liked.new_tensor([STEP_ODDS[k] for k in upper])
         return out.logit + self.config.liking * greater.mean(1)
 
-    def _mapped(self, guides: Guided | None) -> _Mapped | None:
-        if self.guided is None or guides is None:
-            return None
-        kind = guides.maps.device.type
-        with torch.autocast(kind, torch.bfloat16, enabled=self.training and quick_bfloat16(kind)):
-            frames, shot = self.guided(guides)
-        return _Mapped(frames, self.gathered(shot), guides.known.float().unsqueeze(1))
-
     def _seen(self, moved: Tensor | None) -> Tensor | None:
         """What is made of the motion of shots; zeros where it is not known."""
         if self.motion is None or moved is None:
             return None
         known = moved.isfinite().flatten(1).all(1, keepdim=True)
         return self.motion(moved.nan_to_num().flatten(1)) * known
+
+
+def _reasons(config: ModelConfig, judgements: int) -> nn.Module:
+    """From what is told of shots to what is judged of them."""
+    known = config.measures + 3 * config.marks
+    steps = nn.Sequential(nn.Linear(known, 128), nn.ReLU(), nn.Dropout(0.2))
+    return nn.Sequential(*steps, nn.Linear(128, judgements))
 
 
 def normalised(frames: Tensor) -> Tensor:

@@ -33,17 +33,17 @@ from .guided import Guided
 from .infer import Ranker, fold_batch_norm
 from .int8 import Ranges, measured_ranges
 from .losses import binary_loss, class_loss, contrast_loss, hint_loss, liking_loss
-from .model import OF_GUIDES, ShotRanker, normalised
+from .model import OF_GUIDES, ShotRanker, frame_times, normalised
 from .motion import motions
 from .weights import load_model, load_tensors, save_weights
 
 #: Clips by which eight bits are fitted, and by which they are compared with float32.
 _MEASURED, _COMPARED = 64, 200
 _WIDE_PACE = 0.1  # of the learning rate, for layers that read all that describes a shot
-#: Of the learning rate, for what reads guides, where pictures are looked at: many more clips taught it.
-_KEPT_PACE = 0.1
 #: Seconds of work that a checkpoint has to be worth: short epochs do not all write one.
 _WORTH_KEEPING = 20.0
+#: Clips by which one tells what is usual in guides.
+_USUAL = 4096
 #: Clips looked at together when eight bits are fitted.
 _TOGETHER = 8
 Report = Callable[[dict[str, Any]], None]
@@ -101,6 +101,7 @@ def train(
     moved = torch.from_numpy(motions(data)) if config.motion else None
     model = ShotRanker(shape)
     began = take_over(model, start) if start else None
+    settle(model, data, learn, config.seed)
     model.to(device)
     model.to(memory_format=torch.channels_last)  # type: ignore[call-overload]
     keys = momentum_copy(model)
@@ -110,6 +111,9 @@ def train(
     # Where an earlier run stopped.
     schedule = [phase for phase in config.phases for _ in range(phase.epochs)]
     pools = [framed if phase.size else learn for phase in schedule]
+    apart = any(
+        phase.size == 0 for phase in schedule
+    )  # guides are taught by many more clips than have pictures
     lengths = [math.ceil(count_of(data, *of) / of[1].batch) for of in zip(pools, schedule, strict=True)]
     state = out / "checkpoint.pt"
     learning = {"model": model, "keys": keys, "dictionary": dictionary, "optimizer": optimizer}
@@ -126,7 +130,7 @@ def train(
             before, total = (sum(lengths[n] for n in alike if n < m) for m in (epoch, len(schedule)))
             for number, batch in enumerate(batches(data, pools[epoch], phase, config, epoch, moved)):
                 for group in optimizer.param_groups:
-                    pace = _KEPT_PACE if group["guided"] and phase.size else 1.0
+                    pace = 0.0 if apart and group["guided"] and phase.size else 1.0
                     group["lr"] = pace * group["pace"] * learning_rate(config, before + number, total)
 
                 parts = _losses(model, keys, dictionary, batch, config, device)
@@ -199,6 +203,15 @@ def take_over(model: ShotRanker, folder: str | Path) -> str:
             fit = {k: v for k, v in fit.items() if not k.startswith(name)}
     model.load_state_dict(ours | fit)
     return card.sha256
+
+
+def settle(model: ShotRanker, data: Dataset, clips: NDArray[np.int64], seed: int = 0) -> None:
+    """Tell a network what is usual in guides of good clips, from some of the clips."""
+    some = np.random.default_rng(seed).permutation(clips)[:_USUAL]
+    guides = data.guides(np.sort(some)) if model.guided is not None else None
+    if model.guided is not None and guides is not None:
+        good = torch.from_numpy(data.professional[np.sort(some)] > 0.5)
+        model.guided.fit(Guided.of(guides, frame_times(model.config)), good)
 
 
 def int8_ranges(model: ShotRanker, data: Dataset, clips: NDArray[np.int64], seed: int = 0) -> Ranges:

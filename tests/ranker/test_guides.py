@@ -119,6 +119,7 @@ def test_composition_is_what_marks_say() -> None:
     marks[..., at["right_feet"]] = torch.nan
     marks[..., at["covered_eyes"]] = torch.tensor([0.02, 0.1, torch.nan])  # of 4 m: 8 and 38 cm nearer
     marks[..., at["distance"]] = np.log(4.0)
+    marks[..., at["before_eyes"]] = torch.tensor([0.0, 0.1, torch.nan])
     near = torch.zeros(1, 3, SIDE, SIDE, dtype=torch.uint8)
     near[:, 1] = 1 + round(254 * np.log(64 / 1.0) / np.log(64 / 0.25))  # a metre away, all over the frame
     found = composed(marks, near)
@@ -139,14 +140,17 @@ def test_composition_is_what_marks_say() -> None:
     torch.testing.assert_close(aside, torch.tensor([0.5, 0.4, 1.5]))
     torch.testing.assert_close(hat, torch.full((3,), 0.4))
     torch.testing.assert_close(above, torch.full((3,), 0.2))
-    whole, eyes, middle, head, hands, others, nobody = found[0, :, begin + 21 : begin + 28].T
+    whole, eyes, middle, head, hands, others, nobody = found[0, :, begin + 23 : begin + 30].T
     torch.testing.assert_close(whole[:2], torch.tensor([1.0, 6 / 7]), atol=0.02, rtol=0.0)  # of seven points
     torch.testing.assert_close(eyes, torch.tensor([1.0, 0.0, 0.0]), atol=0.06, rtol=0.0)
     torch.testing.assert_close(middle, torch.tensor([1.0, 1.0, 0.0]), atol=0.02, rtol=0.0)
     torch.testing.assert_close(head, middle)
     assert min(hands.min(), others.min()) > 0.95
     assert nobody.max() < 0.05
-    looks = found[0, :, begin + 10 : begin + 21]  # and the shares that are nearer
+    before, hidden = found[0, :, begin + 10 : begin + 12].T  # whatever it is, their own hand too
+    torch.testing.assert_close(before, torch.tensor([0.0, 0.381, 0.0]), atol=1e-3, rtol=0.0)
+    torch.testing.assert_close(hidden, torch.tensor([0.0, 1.0, 0.0]), atol=0.02, rtol=0.0)
+    looks = found[0, :, begin + 12 : begin + 23]  # and the shares that are nearer
     assert looks[0].max() < 0.01
     assert looks[1].min() > 0.95
 

@@ -89,15 +89,22 @@ def test_wrong_clips_and_sets_are_refused(tmp_path: Path) -> None:
 def test_hints_are_scaled_and_unknown_ones_are_nan(tmp_path: Path) -> None:
     rng = np.random.default_rng(1)
     with ShardWriter(tmp_path, WORDS, (SIZE, SIZE), FRAMES) as writer:
-        for i in range(12):
-            told = {} if i == 3 else {"size": float(i), "right_way": 1.0 + i % 2}
-            writer.add(clip(rng, True, 0, 0, 0), True, None, None, None, "g", 0.0, about={"hints": told})
+        for i in range(13):
+            good = i < 12
+            told = {} if i == 3 else {"size": float(i if good else 400), "right_way": 1.0 + i % 2}
+            writer.add(clip(rng, good, 0, 0, 0), good, None, None, None, "g", 0.0, about={"hints": told})
     names, hints = Dataset(tmp_path).hints
     assert names == ("right_way", "size")
+    hints = np.sinh(hints)  # the far ones are drawn nearer
+    far = hints[12, 1]
+    hints = hints[:12]
     known = np.delete(hints, 3, 0)
     assert np.isnan(hints[3]).all()
     assert known[:, 1].mean() == pytest.approx(0, abs=1e-6)
-    assert known[:, 1].std() == pytest.approx(1, abs=1e-6)
+    every = np.delete(np.append(np.arange(12), 400), 3)
+    spread = 0.2 * np.sqrt(np.mean((every - np.delete(np.arange(12), 3).mean()) ** 2))  # the least there is
+    assert known[:, 1].std() == pytest.approx(np.delete(np.arange(12), 3).std() / spread, rel=1e-4)
+    assert far == pytest.approx((400 - np.delete(np.arange(12), 3).mean()) / spread, rel=1e-4)
     assert (known[:, 0] > 0).all()  # a mirrored one has to be the negative, so the middle stays 0
     write_clips(tmp_path / "none", 4)
     assert Dataset(tmp_path / "none").hints[1].shape == (4, 0)

@@ -59,32 +59,26 @@ def face_covered(takes: Takes, subject: Subject, at: NDArray[np.int64], camera: 
     if subject.arms is None:
         return np.zeros(len(camera))
     arms, face = subject.arms[at], subject.face[at]
-    points = [subject.landmarks[name][at] for name in ("eyes", "nose")]
+    points = np.stack([subject.landmarks[name][at] for name in ("eyes", "nose")], axis=1)
     cos, sin = np.cos(_AROUND)[:, None], np.sin(_AROUND)[:, None]
     around = [cos * face[:, 0] - sin * face[:, 1], sin * face[:, 0] + cos * face[:, 1]]
     level = np.stack([*around, np.broadcast_to(face[:, 2], around[0].shape)], axis=-1)
-    before = points[0] + _AWAY * level
+    before = points[:, 0] + _AWAY * level
     least = _behind_arms(before, points, arms, subject.height).min(axis=0)  # [F]
     hidden = _behind_arms(camera, points, arms, subject.height)
     return mean_of(np.maximum(hidden - least, 0.0), takes.window)
 
 
-def _behind_arms(camera: Array, points: list[Array], arms: Array, height: float) -> Array:
-    """Share [P, F] of points [F, 3] that a body's arms [F, 2, 3, 3] hide from cameras [P, F, 3]."""
+def _behind_arms(camera: Array, points: Array, arms: Array, height: float) -> Array:
+    """Share [P, F] of points [F, K, 3] that a body's arms [F, 2, 3, 3] hide from cameras [P, F, 3]."""
     upper, lower = arms[:, :, 1] - arms[:, :, 0], arms[:, :, 2] - arms[:, :, 1]
     reach = 1.0 + _HAND * height / np.maximum(length(lower), 1e-6)
-    limbs = ((arms[:, :, 0], upper), (arms[:, :, 1], reach[..., None] * lower))
-    out = np.zeros(camera.shape[:2])
-    for point in points:
-        ray = point - camera
-        ray = ray * np.maximum(1.0 - _SKIN / np.maximum(length(ray), 1e-6), 0.0)[..., None]
-        near = [
-            _apart(camera, ray, start[None, :, side], along[None, :, side]) < _ARM * height
-            for start, along in limbs
-            for side in (0, 1)
-        ]
-        out += np.any(near, axis=0) / len(points)
-    return out
+    begins = np.concatenate([arms[:, :, 0], arms[:, :, 1]], axis=1)[None, :, None]  # [1, F, 1, limbs, 3]
+    limbs = np.concatenate([upper, reach[..., None] * lower], axis=1)[None, :, None]
+    rays = points - camera[:, :, None]
+    rays = rays * np.maximum(1.0 - _SKIN / np.maximum(length(rays), 1e-6), 0.0)[..., None]
+    away = _apart(camera[:, :, None, None], rays[..., None, :], begins, limbs)
+    return np.asarray((away < _ARM * height).any(axis=-1).mean(axis=-1))
 
 
 def _apart(camera: Array, ray: Array, begin: Array, limb: Array) -> Array:

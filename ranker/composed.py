@@ -24,6 +24,8 @@ _COMMON = {"size": (3.2, 0.7), "lens": (3.8, 0.35), "distance": (0.7, 0.7), "sec
 _LOOKS = [(x, y) for x in (-0.85, -0.3, 0.3, 0.85) for y in (-0.6, 0.5)]
 _NEARER = (0.3, math.log(2), 1.1)
 
+#: Where sizes put what is to be at the top: a point, and how high above the middle, half frames.
+_TOPS = (("top", 0.82), ("top", 0.46), ("top", 0.08), ("crown", 0.84), ("eyes", 0.4))
 #: Points of a body by which one says how much of it is seen.
 _BODY = [POINTS.index(p) for p in ("eyes", "chin", "pocket", "waist", "hand_l", "hand_r", "knees")]
 _HANDS = [POINTS.index(p) for p in ("hand_l", "hand_r")]
@@ -31,7 +33,7 @@ _OTHERS = [POINTS.index(p) for p in ("other_1", "other_2")]
 
 #: Numbers of :func:`composed` of a frame: marks, which points there are, composition, looks, what is seen,
 #: and of each point whether it is covered, and whether it is in the frame.
-COMPOSED = len(MARKS) + len(POINTS) + 12 + len(_LOOKS) + len(_NEARER) + 7 + 2 * len(POINTS)
+COMPOSED = len(MARKS) + len(POINTS) + 12 + len(_TOPS) + len(_LOOKS) + len(_NEARER) + 7 + 2 * len(POINTS)
 #: Which of them says whether the eyes are in the frame.
 EYES_INSIDE = COMPOSED - len(POINTS) + POINTS.index("eyes")
 #: Numbers that :func:`over_time` makes of each of a frame's.
@@ -73,6 +75,7 @@ def composed(told: Tensor, nearness: Tensor) -> Tensor:
         at["crown"] - at["chin"],
         own.clamp(0, 1),
         torch.sigmoid(_SKIN * (own - _FACE)) * inside[..., eyes],
+        *((at[point] - high).abs().clamp_max(2) for point, high in _TOPS),
     ]
     looks, share = _foreground(nearness, marks["distance"])
     parts = [torch.stack(common, -1).nan_to_num(), there.float(), torch.stack(composition, -1)]

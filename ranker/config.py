@@ -27,6 +27,7 @@ class ModelConfig:
     moments: whether a frame is described by where in it features are too, and not by how strong alone
     measures, marks: numbers of L_h of a shot, and of a frame, that are read off the features before the heads
         judge, 0 for none
+    first_fault, faults: which of the measures, one after the other, say by log odds that a shot has a fault
     guides: width of what is made of guides, 0 for none
     liking: what log odds of being liked well count beside those of being good
     """
@@ -42,6 +43,8 @@ class ModelConfig:
     motion: int = 0
     moments: bool = False
     measures: int = 0
+    first_fault: int = 0
+    faults: int = 0
     marks: int = 0
     guides: int = 0
     liking: float = 0.0
@@ -70,7 +73,7 @@ class TrainConfig:
     for all phases that look at guides alone, and once for those that look at pictures.
 
     contrast_weight, class_weight, hint_weight, order_weight: factors of L_q, L_c, L_h and L_o (0 leaves the
-        loss out)
+        loss out); fault_weight: of faults beside what else is known, in L_h
     dictionary, momentum, temperature: K, the momentum encoder's m and τ of L_q
     motion, moments: as in :class:`ModelConfig`; unmoved: share of the clips whose motion is kept from the
         heads, since a glance at a shot does not have it
@@ -96,6 +99,7 @@ class TrainConfig:
     contrast_weight: float = 1.0
     hint_weight: float = 0.0
     order_weight: float = 0.0
+    fault_weight: float = 1.0
     dictionary: int = 6553
     momentum: float = 0.999
     temperature: float = 0.07
@@ -168,7 +172,8 @@ def model_from_json(values: dict[str, Any]) -> ModelConfig:
             k: tuple(str(w) for w in values[k]) for k in ("movements", "scales", "angles")
         }
         rest: dict[str, Any] = {k: int(values[k]) for k in ("frames", "size", "contrast")}
-        rest |= {k: int(values.get(k, 0)) for k in ("motion", "measures", "marks", "guides")}
+        further = ("motion", "measures", "first_fault", "faults", "marks", "guides")
+        rest |= {k: int(values.get(k, 0)) for k in further}
         rest["inner"] = int(values.get("inner", rest["size"]))
         moments, liking = bool(values.get("moments", False)), float(values.get("liking", 0.0))
         rest |= {"backbone": str(values["backbone"]), "moments": moments, "liking": liking}
@@ -183,6 +188,7 @@ def model_from_json(values: dict[str, Any]) -> ModelConfig:
         and 1 <= config.contrast <= 4096
         and 0 <= config.motion <= 4096
         and 0 <= config.measures <= 4096
+        and 0 <= config.first_fault <= config.first_fault + config.faults <= config.measures
         and 0 <= config.marks <= 4096
         and 0 <= config.guides <= 4096
         and 0 <= config.liking <= 100

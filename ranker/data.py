@@ -33,6 +33,8 @@ SCHEMA = "vds.dataset/1"
 SHARD = 64
 #: Hints of such names change their sign in a mirrored picture.
 MIRRORED = "right"
+#: Such say that a clip has a fault: 1 for one that has, 0 for one that has not.
+FAULT = "fault_"
 _LEAST = 0.2  # of the deviation of all clips, that a hint has at least among positives
 
 
@@ -268,11 +270,20 @@ class Dataset:
     def hints(self) -> tuple[tuple[str, ...], NDArray[np.float32]]:
         """What whoever made the set knows of its clips in numbers (``hints`` of a label's ``about``): their
         names, and float32 [N, K], NaN where not known: in deviations from the mean of positives, asinh of
-        them, so that what tells good ones apart is not lost beside how far off bad ones are.
+        them, so that what tells good ones apart is not lost beside how far off bad ones are. Faults stay as
+        they are.
         """
         return _standard(
             [label.about.get("hints") or {} for label in self.labels], (), self.professional > 0.5
         )
+
+    @property
+    def faults(self) -> slice:
+        """Which of the hints are of faults: one after the other, since they stand in the order of their
+        names."""
+        names = self.hints[0]
+        first = next((k for k, name in enumerate(names) if name.startswith(FAULT)), 0)
+        return slice(first, first + sum(name.startswith(FAULT) for name in names))
 
     @cached_property
     def frame_hints(self) -> tuple[tuple[str, ...], NDArray[np.float32]]:
@@ -376,7 +387,9 @@ def _standard(
         middle = np.where(signed, 0.0, middle)  # so that a mirrored one is the negative
         own, every = (np.sqrt(np.nanmean((t - middle) ** 2, across)) for t in (usual, table))
     spread = np.maximum(np.nan_to_num(own), _LEAST * every)
-    return names, np.arcsinh((table - middle) / np.maximum(spread, 1e-6)).astype(np.float32)
+    scaled = np.arcsinh((table - middle) / np.maximum(spread, 1e-6))
+    plain = np.array([name.startswith(FAULT) for name in names])
+    return names, np.where(plain, table, scaled).astype(np.float32)
 
 
 def scaled(frames: NDArray[np.uint8], size: int) -> NDArray[np.uint8]:

@@ -7,17 +7,19 @@ if there were no such network.
 
 from __future__ import annotations
 
-from itertools import pairwise
 from typing import NamedTuple
 
 import torch
 from torch import Tensor, nn
 
 from .composed import COMPOSED, EYES_INSIDE, SUMMED, composed, over_time
-from .guides import CHANNELS, FLOW, SIDE, Guides, pairs
+from .guides import CHANNELS, FLOW, MARKS, SIDE, Guides, pairs
 
 _MAPS, _WIDE, _FRAME = 128, 256, 160  # numbers that describe the maps of a frame, and all of a frame
+_PATCH, _PATCHES = 4, 32  # cells along what is first summed up of a map, and numbers that describe such
 _PAIR, _MOVED = 64, 256  # and a pair of frames, all pairs
+_PACES = 3
+_HALF_SENSOR, _SLOW = 18.0, 0.2  # millimetres; radians a second
 _LEAST = 0.1  # of the deviation of all shots, that good ones are taken to have at least
 _FINE = 20.0  # by what motion is multiplied, so that slow ones are seen
 
@@ -81,12 +83,10 @@ class GuideNet(nn.Module):
 
     def __init__(self, frames: int) -> None:
         super().__init__()
-        widths = (len(CHANNELS), 24, 64, 128)
-        steps: list[nn.Module] = []
-        for before, after in pairwise(widths):
-            steps += [nn.Conv2d(before, after, 3, 2, 1), nn.GroupNorm(8, after), nn.ReLU()]
-        last = widths[-1] * (SIDE // 2 ** (len(widths) - 1)) ** 2
-        self.maps = nn.Sequential(*steps, nn.Flatten(), nn.Linear(last, _MAPS), nn.ReLU())
+        first = (nn.Conv2d(len(CHANNELS), _PATCHES, _PATCH, _PATCH), nn.ReLU())
+        second = (nn.Conv2d(_PATCHES, 2 * _PATCHES, 3, 2, 1), nn.GroupNorm(8, 2 * _PATCHES), nn.ReLU())
+        last = 2 * _PATCHES * (SIDE // _PATCH // 2) ** 2
+        self.maps = nn.Sequential(*first, *second, nn.Flatten(), nn.Linear(last, _MAPS), nn.ReLU())
         self.evened = Evened(COMPOSED)  # a tenth may be much for one number
         wide = nn.Sequential(nn.Linear(_MAPS + COMPOSED, _WIDE), nn.ReLU())
         self.marks = nn.Sequential(*wide, nn.Linear(_WIDE, _FRAME), nn.ReLU())
@@ -95,7 +95,7 @@ class GuideNet(nn.Module):
             *(nn.Linear(32 * (FLOW // 2) ** 2, _PAIR), nn.ReLU()),
         )
         self.moved = nn.Sequential(nn.Linear(_PAIR * len(pairs(frames)), _MOVED), nn.ReLU(), nn.Dropout(0.1))
-        self.frame, self.shot = _FRAME + COMPOSED, SUMMED * (_FRAME + COMPOSED) + _MOVED
+        self.frame, self.shot = _FRAME + COMPOSED, SUMMED * (_FRAME + COMPOSED) + _MOVED + _PACES
 
     @torch.no_grad()
     def fit(self, seen: Guided, good: Tensor) -> None:
@@ -120,4 +120,19 @@ class GuideNet(nn.Module):
         moved = self.moved(moved) * seen.flow.isfinite().flatten(1).all(1, keepdim=True)
         with torch.autocast(maps.device.type, enabled=False):
             summed = over_time(frames.float(), seen.times, inside)
-        return frames.float(), torch.cat([summed, moved.float()], 1)
+            paces = _paces(seen)
+        return frames.float(), torch.cat([summed, moved.float(), paces], 1)
+
+
+def _paces(seen: Guided) -> Tensor:
+    """How fast the camera turns between neighbouring frames: the fastest, the mean, how much it changes at
+    most, [B, 3]; 0 where it is not known."""
+    count = seen.times.shape[1]
+    if not seen.flow.isfinite().all(dim=(1, 2, 3, 4)).any() or count < 3:
+        return seen.times.new_zeros(len(seen.times), _PACES)
+    middle = slice(FLOW // 2 - 1, FLOW // 2 + 1)
+    gone = seen.flow[:, : count - 1, middle, middle].nan_to_num().mean((2, 3)).norm(dim=-1)  # half frames
+    lens, seconds = (seen.marks[:, :-1, MARKS.index(name)].nan_to_num() for name in ("lens", "seconds"))
+    turned = gone * _HALF_SENSOR / lens.exp() / (seen.times.diff() * seconds.exp()).clamp_min(1e-3)
+    pace = torch.asinh(turned / _SLOW)
+    return torch.stack([pace.amax(1), pace.mean(1), pace.diff().abs().amax(1)], 1)

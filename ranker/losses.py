@@ -86,6 +86,15 @@ def hint_loss(told: Tensor, hints: Tensor) -> Tensor:
     return _apart(told, hints)
 
 
+def fault_loss(told: Tensor, known: Tensor) -> Tensor:
+    """The part of L_h that is of faults: cross-entropy of log odds told [B, K] of having each against whether
+    a shot has it, the mean over what is known; NaN is not known, and with nothing known it is 0."""
+    sure = known.isfinite()
+    if not sure.any():
+        return told.new_zeros(())
+    return functional.binary_cross_entropy_with_logits(told[sure], known[sure])
+
+
 def _apart(told: Tensor, known: Tensor) -> Tensor:
     """Smooth L1, straight from ``_STRAIGHT`` on, the mean over what is not NaN."""
     sure = known.isfinite()

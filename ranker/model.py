@@ -35,6 +35,7 @@ PIXEL_STD = (0.229, 0.224, 0.225)
 OF_GUIDES = (
     *("guided.", "gathered.", "judged.", "straight.", "reader_guided.", "marker_guided."),
     "reasons_guided.",
+    "faults_guided",
 )
 
 
@@ -130,6 +131,8 @@ class ShotRanker(nn.Module):
             if config.marks:
                 self.marker = nn.Linear(self.described, config.marks)
             self.reasons = _reasons(config, judgements)
+            #: How much each fault counts: some are not seen well, and some come together.
+            self.faults = nn.Parameter(torch.ones(config.faults))
         self.guided: GuideNet | None = None
         if config.guides:
             self.guided = GuideNet(config.frames)
@@ -146,6 +149,7 @@ class ShotRanker(nn.Module):
             if config.measures:
                 self.reader_guided = nn.Linear(config.guides, config.measures)
                 self.reasons_guided = _reasons(config, judgements)
+                self.faults_guided = nn.Parameter(torch.ones(config.faults))
             if config.marks:
                 self.marker_guided = nn.Linear(self.guided.frame, config.marks)
 
@@ -219,6 +223,7 @@ class ShotRanker(nn.Module):
             if self.config.marks and pictures:
                 marked = self.marker(features)
             judged = judged + self.reasons(torch.cat([told, *self._over_time(marked, times)], 1))
+            judged = self._faultless(judged, told, self.faults)
         return _Judgement(judged, told, marked)
 
     def _by_guides(self, guided: GuideNet, guides: Guided) -> _Judgement:
@@ -236,7 +241,23 @@ class ShotRanker(nn.Module):
                 marked = self.marker_guided(frames)
             known = torch.cat([told, *self._over_time(marked, guides.times)], 1)
             judged = judged + self.reasons_guided(known)
+            judged = self._faultless(judged, told, self.faults_guided)
         return _Judgement(judged, told, marked)
+
+    def _faultless(self, judged: Tensor, told: Tensor, counts: Tensor) -> Tensor:
+        """Judgements of which those of being good and of being liked hold only for a shot without faults.
+
+        One fault is enough, whatever else is good: P = P(no fault) P(good but for faults), where a sum of log
+        odds would weigh them up (noisy-or, Pearl 1988).
+        """
+        c = self.config
+        if not c.faults:
+            return judged
+        faults = told[:, c.first_fault : c.first_fault + c.faults]
+        free = (counts.clamp_min(0) * functional.logsigmoid(-faults)).sum(1, keepdim=True)
+        count = 1 + len(STEPS)
+        both = (free + functional.logsigmoid(judged[:, :count])).clamp_max(-1e-6)
+        return torch.cat([both - (-both.expm1()).log(), judged[:, count:]], 1)
 
     def _over_time(self, marked: Tensor, times: Tensor) -> list[Tensor]:
         return [fuse(marked, times)] if self.config.marks else []

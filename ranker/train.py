@@ -32,7 +32,7 @@ from .evaluate import agreement_with_fp32, evaluate, mean
 from .guided import Guided
 from .infer import Ranker, fold_batch_norm
 from .int8 import Ranges, measured_ranges
-from .losses import binary_loss, class_loss, contrast_loss, hint_loss, liking_loss
+from .losses import binary_loss, class_loss, contrast_loss, fault_loss, hint_loss, liking_loss
 from .model import OF_GUIDES, ShotRanker, frame_times, normalised
 from .motion import motions
 from .weights import load_model, load_tensors, save_weights
@@ -90,6 +90,8 @@ def train(
         motion=config.motion,
         moments=config.moments,
         measures=len(data.hints[0]) if config.hint_weight else 0,
+        first_fault=data.faults.start if config.hint_weight else 0,
+        faults=data.faults.stop - data.faults.start if config.hint_weight else 0,
         marks=len(data.frame_hints[0]) if config.hint_weight and data.hints[0] else 0,
         guides=config.guides if data.guided is not None else 0,
         liking=LIKING if config.order_weight and np.isfinite(data.liked).any() else 0.0,
@@ -321,7 +323,11 @@ def _losses(
     classes = class_loss((out.movement, out.scale, out.angle), labels, config.smoothing)
     hint = torch.zeros((), device=device)
     if config.hint_weight and batch.hints.shape[1]:
-        hint = hint_loss(out.told, batch.hints.to(device))
+        shape, hints = model.config, batch.hints.to(device)
+        of_faults = slice(shape.first_fault, shape.first_fault + shape.faults)
+        plain = [k for k in range(shape.measures) if not of_faults.start <= k < of_faults.stop]
+        hint = hint_loss(out.told[:, plain], hints[:, plain])
+        hint = hint + config.fault_weight * fault_loss(out.told[:, of_faults], hints[:, of_faults])
         if out.marked.shape[2] and batch.query is not None:
             hint = hint + hint_loss(out.marked, batch.marks.to(device))
         if out.mapped.shape[2]:

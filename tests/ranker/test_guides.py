@@ -140,7 +140,7 @@ def test_composition_is_what_marks_say() -> None:
     torch.testing.assert_close(aside, torch.tensor([0.5, 0.4, 1.5]))
     torch.testing.assert_close(hat, torch.full((3,), 0.4))
     torch.testing.assert_close(above, torch.full((3,), 0.2))
-    whole, eyes, middle, head, hands, others, nobody = found[0, :, begin + 23 : begin + 30].T
+    whole, eyes, middle, head, hands, others, nobody = found[0, :, begin + 28 : begin + 35].T
     torch.testing.assert_close(whole[:2], torch.tensor([1.0, 6 / 7]), atol=0.02, rtol=0.0)  # of seven points
     torch.testing.assert_close(eyes, torch.tensor([1.0, 0.0, 0.0]), atol=0.06, rtol=0.0)
     torch.testing.assert_close(middle, torch.tensor([1.0, 1.0, 0.0]), atol=0.02, rtol=0.0)
@@ -150,7 +150,9 @@ def test_composition_is_what_marks_say() -> None:
     before, hidden = found[0, :, begin + 10 : begin + 12].T  # whatever it is, their own hand too
     torch.testing.assert_close(before, torch.tensor([0.0, 0.381, 0.0]), atol=1e-3, rtol=0.0)
     torch.testing.assert_close(hidden, torch.tensor([0.0, 1.0, 0.0]), atol=0.02, rtol=0.0)
-    looks = found[0, :, begin + 12 : begin + 23]  # and the shares that are nearer
+    off = found[0, :, begin + 12 : begin + 17]  # the lines that sizes put a head on
+    torch.testing.assert_close(off[0], torch.tensor([0.58, 0.94, 1.32, 0.36, 0.0667]), atol=1e-3, rtol=0.0)
+    looks = found[0, :, begin + 17 : begin + 28]  # and the shares that are nearer
     assert looks[0].max() < 0.01
     assert looks[1].min() > 0.95
 

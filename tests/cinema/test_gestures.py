@@ -2,13 +2,19 @@
 
 from __future__ import annotations
 
-import numpy as np
+from dataclasses import replace
 
-from vdsl.cinema.gestures import _apart
+import numpy as np
+from numpy.typing import NDArray
+
+from vdsl.cinema.gestures import _apart, face_covered
+from vdsl.cinema.subject import Subject
+from vdsl.cinema.takes import Takes
 from vdsl.pipeline.compile import Act
 from vdsl.pipeline.trial import stage_script
 from vdsl.propose.cameras import propose_cameras
 from vdsl.propose.story import tell
+from vdsl.propose.subjects import subject_of
 from vdsl.propose.types import CameraProposal
 
 FLOOR = "set floor { area floor, at (-9, -9)m, size (18, 18)m { spot here, at (9, 9)m, facing 0deg\n"
@@ -50,3 +56,38 @@ def test_a_line_of_sight_keeps_its_distance_to_the_trunk() -> None:
     body = collar[..., None, :] + down[:, None] * trunk[..., None, :]
     least = np.linalg.norm(ray[..., :, None, :] - body[..., None, :, :], axis=-1).min(axis=(-1, -2))
     np.testing.assert_allclose(_apart(camera, 0.93 * (hand - camera), collar, trunk), least, atol=0.012)
+
+
+def test_an_arm_before_the_face_counts_where_another_side_shows_it() -> None:
+    """A forearm upright before the face hides it from ahead; hands all around it hide it from everywhere."""
+    act, cameras = filmed("(anna clap)", "static close-up eye-level")
+    told = tell(act.state, act.line, act.filming, shot=act.line.shots[0]).proposals[0]
+    plain = subject_of(act.line.shots[0], told, act.filming)
+    every, at = np.ones((2, 2), bool), np.array([0, 5])
+    takes = Takes(cameras[0].track, (), every, np.zeros(2, np.int64), 0.0, False, ())
+    eyes = plain.landmarks["eyes"][at]
+    ahead, left = plain.face[at], np.cross((0.0, 0.0, 1.0), plain.face[at])
+    camera = np.stack([eyes + 2.0 * ahead, eyes + 2.0 * (0.5 * ahead + 0.87 * left)])
+
+    def before(*ways: NDArray[np.float64]) -> Subject:
+        """With an upright forearm 15 cm from the eyes in each of two directions."""
+        arms = np.empty((plain.frames, 2, 3, 3))
+        for side, way in enumerate(ways):
+            elbow = plain.landmarks["eyes"] + 0.15 * way[0] - (0.0, 0.0, 0.2)
+            heights = np.array((-0.3, 0.0, 0.25))[:, None] * (0.0, 0.0, 1.0)  # of shoulder, elbow and wrist
+            arms[:, side] = elbow[:, None] + heights
+        return replace(plain, arms=arms)
+
+    away = -ahead
+    covered = face_covered(takes, before(ahead, away), at, camera)
+    np.testing.assert_allclose(covered, (1.0, 0.0))
+    assert (face_covered(takes, before(away, away), at, camera) == 0.0).all()
+    assert (face_covered(takes, replace(plain, arms=None), at, camera) == 0.0).all()
+
+
+def test_who_guards_the_face_is_filmed_from_where_it_is_seen() -> None:
+    _, cameras = filmed("(anna do yoga)", "static medium eye-level")
+    covered = np.array([c.measures["face_covered"] for c in cameras])
+    assert covered.max() > 0.3
+    best = max(cameras, key=lambda c: c.measures["geometry"])
+    assert best.measures["face_covered"] < 0.2

@@ -127,6 +127,8 @@ def test_marks_are_where_the_subject_is_and_what_is_before_it(camerawork: Camera
         np.testing.assert_allclose(told[mark], known[hint], atol=3e-3)
     np.testing.assert_allclose(told["seconds"], np.log(story.frames / act.filming.fps), atol=2e-3)
     assert np.abs(told["covered_eyes"]).max() < 0.3  # nothing before her face but its front
+    assert 0.0 < told["before_eyes"].min() < told["before_eyes"].max() < 0.3  # which is before the eyes
+    assert (told["open"] == camera.hidden_walls.any()).all()
     assert np.isnan(told["covered_feet"]).all()  # they are not in the picture
     assert np.isnan(told["right_other_2"]).all()
 
@@ -135,6 +137,12 @@ def test_marks_are_where_the_subject_is_and_what_is_before_it(camerawork: Camera
     assert hidden.guides is not None
     covered = hidden.guides.marks[0, :, MARKS.index("covered_eyes")].astype(float)
     assert np.nanmin(covered) > 0.5
+    walls = replace(camera, hidden_walls=~camera.hidden_walls)
+    other = camerawork.judge_frames(act.staged, "board", grid.story, (walls, camera), about=[about] * 2)
+    assert other.guides is not None
+    opened = other.guides.marks[:, 0, MARKS.index("open")].tolist()
+    assert opened == [float(walls.hidden_walls.any()), float(camera.hidden_walls.any())]
+    assert max(opened) == 1.0
 
 
 def _from_behind_ben(camera: CameraProposal, story: StoryProposal, at: np.ndarray) -> CameraTrack:

@@ -15,7 +15,7 @@ from ranker.composed import COMPOSED, EYES_INSIDE, SUMMED, composed, over_time
 from ranker.config import Phase
 from ranker.data import Dataset, ShardWriter
 from ranker.errors import RankerError
-from ranker.guided import Guided
+from ranker.guided import Evened, Guided, _paces
 from ranker.guides import CHANNELS, FLOW, MARKS, POINTS, SIDE, Guides, joined, pairs
 from ranker.infer import Ranker
 from ranker.model import ShotRanker, frame_times, normalised
@@ -155,6 +155,34 @@ def test_composition_is_what_marks_say() -> None:
     looks = found[0, :, begin + 17 : begin + 28]  # and the shares that are nearer
     assert looks[0].max() < 0.01
     assert looks[1].min() > 0.95
+
+
+def test_numbers_are_scaled_by_good_shots_and_none_is_lost_far_off() -> None:
+    good = torch.tensor([[1.0, 5.0], [3.0, 5.0]])
+    every = torch.cat([good, torch.tensor([[102.0, 7.0], [-90.0, 3.0]])])
+    evened = Evened(2)
+    evened.fit(good, every)
+    near, far = evened(torch.tensor([[2.5, 5.0], [500.0, 6.0]]))
+    spread = 0.1 * every[:, 0].std(correction=0)  # good ones are hardly apart beside all
+    torch.testing.assert_close(near, torch.stack([torch.asinh(0.5 / spread), torch.tensor(0.0)]))
+    assert 3 < far[0] < 5
+    assert far[1] == pytest.approx(np.arcsinh(1 / (0.1 * every[:, 1].std(correction=0))), rel=1e-5)
+
+
+def test_how_fast_a_camera_turns_is_what_its_flow_and_its_lens_say() -> None:
+    guides = guides_of(np.random.default_rng(2), True, 0)
+    flow = np.zeros_like(guides.flow)
+    marks = guides.marks.copy()
+    marks[..., MARKS.index("lens")], marks[..., MARKS.index("seconds")] = np.log(36.0), np.log(2.0)
+    flow[:, 1, ..., 0] = 0.2  # between the second frame and the third
+    times = torch.linspace(0, 1, FRAMES).expand(1, -1)
+    fastest, mean, change = _paces(Guided.of(Guides(guides.maps, flow, marks), times[0]))[0].tolist()
+    step = 2.0 / (FRAMES - 1)
+    assert fastest == pytest.approx(np.arcsinh(0.2 * 18 / 36 / step / 0.2), rel=2e-2)
+    assert mean == pytest.approx(fastest / (FRAMES - 1), rel=1e-4)
+    assert change == pytest.approx(fastest, rel=1e-4)
+    unknown = Guides(guides.maps, flow * np.float16(np.nan), marks)
+    assert _paces(Guided.of(unknown, times[0])).abs().max() == 0
 
 
 def test_what_is_summed_up_over_a_shot() -> None:

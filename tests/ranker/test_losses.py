@@ -11,7 +11,7 @@ from ranker_clips import model_config
 
 from ranker.composed import fuse
 from ranker.dictionary import Dictionary, follow, momentum_copy
-from ranker.losses import STEPS, binary_loss, class_loss, contrast_loss, hint_loss, liking_loss
+from ranker.losses import STEPS, binary_loss, class_loss, contrast_loss, fault_loss, hint_loss, liking_loss
 from ranker.model import ShotRanker, normalised
 
 
@@ -52,6 +52,14 @@ def test_hint_loss_is_square_near_and_straight_far_over_what_is_known() -> None:
     near, far = 0.2**2 / 2 / 0.3, 3.0 - 0.3 / 2
     assert float(hint_loss(told, hints)) == pytest.approx((near + far + 0.0) / 3)
     assert float(hint_loss(told, torch.full((2, 2), math.nan))) == 0.0
+
+
+def test_fault_loss_is_cross_entropy_over_what_is_known() -> None:
+    told = torch.tensor([[2.0, 9.0], [-1.0, 0.5]])
+    known = torch.tensor([[1.0, math.nan], [0.0, 1.0]])
+    expected = [math.log(1 + math.exp(-2.0)), math.log(1 + math.exp(-1.0)), math.log(1 + math.exp(-0.5))]
+    assert float(fault_loss(told, known)) == pytest.approx(sum(expected) / 3, rel=1e-6)
+    assert float(fault_loss(told, torch.full((2, 2), math.nan))) == 0.0
 
 
 def test_liking_loss_asks_of_every_step_whether_a_shot_is_above_it() -> None:

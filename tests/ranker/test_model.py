@@ -77,6 +77,27 @@ def test_what_is_told_of_a_shot_is_learnt_and_judged_by(tmp_path: Path) -> None:
     assert float((more[0] - more[1]).abs().max()) > 0.01  # what is told counts
 
 
+def test_one_fault_is_enough_for_a_shot_not_to_be_good() -> None:
+    config = model_config(measures=5, first_fault=1, faults=3)
+    model = ShotRanker(config)
+    told = torch.tensor(
+        [[9.0, -8.0, -8.0, -8.0, 9.0], [0.0, -8.0, 6.0, -8.0, 0.0], [0.0, -1.0, -2.0, 0.5, 0.0]]
+    )
+    judged = torch.tensor([[2.0] * 17]).expand(3, -1)
+    found = model._faultless(judged, told, torch.tensor([1.0, 1.0, 2.0]))
+    assert found[0, 0] == pytest.approx(2.0, abs=0.02)  # no fault is told: only what else there is counts
+    assert found[1, 0] < -5
+    p = [1 / (1 + np.exp(x)) for x in (-1.0, -2.0, 0.5)]  # of not having each
+    p = p[0] * p[1] * p[2] ** 2 / (1 + np.exp(-2.0))
+    assert found[2, 0] == pytest.approx(np.log(p / (1 - p)), rel=1e-4)
+    assert torch.equal(found[:, 0], found[:, 3])  # it cannot be liked for that either
+    assert torch.equal(found[:, 6:], judged[:, 6:])  # but shows what it shows
+    loaded = model_from_json(to_json(config))
+    assert (loaded.first_fault, loaded.faults) == (1, 3)
+    with pytest.raises(RankerError, match="out of range"):
+        model_from_json(to_json(replace(config, faults=9)))
+
+
 def test_a_training_starts_from_other_weights_as_far_as_they_fit(tmp_path: Path) -> None:
     torch.manual_seed(1)
     other = ShotRanker(model_config(moments=True))

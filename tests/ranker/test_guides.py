@@ -166,7 +166,9 @@ def test_numbers_are_scaled_by_good_shots_and_none_is_lost_far_off() -> None:
     spread = 0.1 * every[:, 0].std(correction=0)  # good ones are hardly apart beside all
     torch.testing.assert_close(near, torch.stack([torch.asinh(0.5 / spread), torch.tensor(0.0)]))
     assert 3 < far[0] < 5
-    assert far[1] == pytest.approx(np.arcsinh(1 / (0.1 * every[:, 1].std(correction=0))), rel=1e-5)
+    assert float(far[1]) == pytest.approx(
+        np.arcsinh(1 / (0.1 * float(every[:, 1].std(correction=0)))), rel=1e-5
+    )
 
 
 def test_how_fast_a_camera_turns_is_what_its_flow_and_its_lens_say() -> None:

@@ -127,7 +127,7 @@ def test_the_discriminator_judges_the_same_way_twice(built):
     document = json.loads((folder / "judged" / "storyboard.json").read_text())
     scores = [take["score"] for shot in document["shots"] for take in shot["takes"]]
     assert len(set(scores)) == 4
-    assert all(0.0 < score < 1.0 for score in scores)
+    assert all(0.0 <= score <= 1.0 for score in scores), scores  # six decimals: a poor walk may have 0
     report = json.loads((folder / "judged" / "report.json").read_text())
     assert next(s["count"] for s in report["stages"] if s["name"] == "rank") == 12 * 8  # frames
 

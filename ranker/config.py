@@ -49,6 +49,11 @@ class ModelConfig:
     guides: int = 0
     liking: float = 0.0
 
+    @property
+    def of_faults(self) -> slice:
+        """Which of the measures are of faults."""
+        return slice(self.first_fault, self.first_fault + self.faults)
+
 
 @dataclass(frozen=True)
 class Phase:

@@ -18,7 +18,7 @@ from .guides import CHANNELS, FLOW, MARKS, SIDE, Guides, pairs
 _MAPS, _WIDE, _FRAME = 128, 256, 160  # numbers that describe the maps of a frame, and all of a frame
 _PATCH, _PATCHES = 4, 32  # cells along what is first summed up of a map, and numbers that describe such
 _PAIR, _MOVED = 64, 256  # and a pair of frames, all pairs
-_PACES = 3
+_PACES = 3  # numbers of how fast a camera turns
 _HALF_SENSOR, _SLOW = 18.0, 0.2  # millimetres; radians a second
 _LEAST = 0.1  # of the deviation of all shots, that good ones are taken to have at least
 _FINE = 20.0  # by what motion is multiplied, so that slow ones are seen

@@ -250,10 +250,9 @@ class ShotRanker(nn.Module):
         One fault is enough, whatever else is good: P = P(no fault) P(good but for faults), where a sum of log
         odds would weigh them up (noisy-or, Pearl 1988).
         """
-        c = self.config
-        if not c.faults:
+        if not self.config.faults:
             return judged
-        faults = told[:, c.first_fault : c.first_fault + c.faults]
+        faults = told[:, self.config.of_faults]
         free = (counts.clamp_min(0) * functional.logsigmoid(-faults)).sum(1, keepdim=True)
         count = 1 + len(STEPS)
         both = (free + functional.logsigmoid(judged[:, :count])).clamp_max(-1e-6)

@@ -113,9 +113,8 @@ def train(
     # Where an earlier run stopped.
     schedule = [phase for phase in config.phases for _ in range(phase.epochs)]
     pools = [framed if phase.size else learn for phase in schedule]
-    apart = any(
-        phase.size == 0 for phase in schedule
-    )  # guides are taught by many more clips than have pictures
+    # Guides are taught by many more clips than have pictures, which do not change what that taught.
+    apart = any(phase.size == 0 for phase in schedule)
     lengths = [math.ceil(count_of(data, *of) / of[1].batch) for of in zip(pools, schedule, strict=True)]
     state = out / "checkpoint.pt"
     learning = {"model": model, "keys": keys, "dictionary": dictionary, "optimizer": optimizer}
@@ -323,11 +322,11 @@ def _losses(
     classes = class_loss((out.movement, out.scale, out.angle), labels, config.smoothing)
     hint = torch.zeros((), device=device)
     if config.hint_weight and batch.hints.shape[1]:
-        shape, hints = model.config, batch.hints.to(device)
-        of_faults = slice(shape.first_fault, shape.first_fault + shape.faults)
-        plain = [k for k in range(shape.measures) if not of_faults.start <= k < of_faults.stop]
-        hint = hint_loss(out.told[:, plain], hints[:, plain])
-        hint = hint + config.fault_weight * fault_loss(out.told[:, of_faults], hints[:, of_faults])
+        told, hints, faults = out.told, batch.hints.to(device), model.config.of_faults
+        plain = torch.ones(told.shape[1], dtype=torch.bool, device=device)
+        plain[faults] = False
+        hint = hint_loss(told[:, plain], hints[:, plain])
+        hint = hint + config.fault_weight * fault_loss(told[:, faults], hints[:, faults])
         if out.marked.shape[2] and batch.query is not None:
             hint = hint + hint_loss(out.marked, batch.marks.to(device))
         if out.mapped.shape[2]:

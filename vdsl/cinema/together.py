@@ -122,10 +122,10 @@ def everybody_measured(
         found.append(visibility(takes, inside, seen) | {"head_cropped": broken(takes, one, picture)})
         shown = (inside & seen)[:, :, [SIGHT.index(name) for name in ("hand_l", "hand_r")]]
         found[-1]["hands_missed"] = hands_missed(takes, one, at, camera, shown)
-        found[-1]["face_covered"] = face_covered(takes, one, at, camera)
     worst = {"head_cropped": np.max, "visibility": np.min, "head_visible": np.min, "ends_visible": np.min}
     out = {k: np.asarray(of([each[k] for each in found], axis=0)) for k, of in worst.items()}
-    out |= {name: found[0][name] for name in ("hands_missed", "face_covered")}  # of who acts
+    out["hands_missed"] = found[0]["hands_missed"]  # of who acts
+    out["face_covered"] = face_covered(takes, subject.members[0], at, camera)
     return out | {"face": _faces(takes, subject, at, camera)}
 
 

@@ -52,7 +52,7 @@ class Levels:
     person: NDArray[np.int32]
     vertices: int
 
-    @property
+    @cached_property
     def drawn(self) -> int:
         """How many skinned faces a view has at most: of each body, those of its largest level."""
         if not len(self.middle):
@@ -75,10 +75,10 @@ class Levels:
         loose[faces[self.body < 0].reshape(-1)] = True  # what they share
         return loose, of
 
-    def used(self, shown: NDArray[np.bool_]) -> NDArray[np.int32]:
-        """The skinned vertices that are needed where some levels of bodies are shown, [B, COUNT]."""
+    def used(self, shown: NDArray[np.bool_]) -> NDArray[np.bool_]:
+        """Which skinned vertices are needed where some levels of bodies are shown, [B, COUNT]."""
         loose, of = self._vertices
-        return np.flatnonzero(loose | of[shown].any(axis=0)).astype(np.int32)
+        return np.asarray(loose | of[shown].any(axis=0))
 
     def chosen(
         self,

@@ -68,7 +68,7 @@ class EmptySets:
         )
         resting = np.ones(len(count), np.bool_)
         resting[of.reshape(-1)[moves]] = False
-        leaves = resting[chosen] & (moments.resting is not None)
+        leaves = resting[chosen] & (moments.leaves is not None)
         rest = hinges[:1].tobytes() if leaves.any() else b""
         wanted = (size, key[first[chosen]].tobytes() + leaves.tobytes() + rest)
         if len(chosen) and wanted != self._kept:

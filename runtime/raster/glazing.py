@@ -74,12 +74,13 @@ class Glazing:
         """Take over what moves."""
         sheets, a = self._sheets, self._arrays
         moving = len(sheets.clusters) - sheets.moving_first
-        wanted = self._backend.upload(np.ones(len(sheets.clusters), np.int32))
-        self._ball = self._buffer("pane_ball", (moments.count, max(moving, 1), 4), np.float32)
+        count, up = moments.count, self._backend.upload
+        wanted, none = up(np.ones((count, max(moving, 1)), np.int32)), up(np.zeros(max(moving, 1), np.int32))
+        self._ball = self._buffer("pane_ball", (count, max(moving, 1), 4), np.float32)
         if moving:
-            places = (sheets.moving_first, len(sheets.vertices), moments.count, moments.position, self._ball)
+            places = (sheets.moving_first, len(sheets.vertices), count, moments.position, self._ball)
             self._bound(a["faces"], a["clusters"], wanted, *places)
-        self._visibility.move(moments.position, self._ball, wanted, moments.count if moving else 0)
+        self._visibility.move(moments.position, self._ball, wanted, none, count if moving else 0)
 
     def boxes(
         self,

@@ -19,6 +19,7 @@ from .lamps import lamp_volume
 from .looks import glass_colors, gloom, packed_light, paper_level, paper_tones
 from .panes import Glass, divided
 from .prepare import Prepared, check, prepare
+from .resting import Rig
 from .sunlight import Sunlight, find_sunlight
 from .types import RenderScene, Style, people_of
 
@@ -87,6 +88,8 @@ class Loaded:
     cells: tuple[int, int, int]
     columns: int
     rows: int
+    highest: float
+    rig: Rig
     walls: int
     people: int
     palette: int
@@ -107,7 +110,7 @@ def loaded(scene: RenderScene, style: Style, backend: Backend, shading: Any) -> 
     prepared = prepare(opaque, style, backend.on_host)
     arrays = _uploaded(prepared, opaque, style, backend)
     arrays["floor"], columns, rows = _floor(prepared, backend)
-    arrays["tops"] = _tops(prepared, arrays, (columns, rows), style, backend)
+    arrays["tops"], highest = _tops(prepared, arrays, (columns, rows), style, backend)
     shadow = _set_shadow(prepared, arrays, style, backend, prepared.set_casters)
     count = prepared.static_faces
     sheet = backend.buffer((2 * max(count, 1) * shading.SHEET,), np.float32)
@@ -129,7 +132,8 @@ def loaded(scene: RenderScene, style: Style, backend: Backend, shading: Any) -> 
     palette = int(opaque.joints.max()) + 1 if len(opaque.joints) else 0
     paper = paper_level(opaque.light), gloom(opaque.light)
     surfaces, extent = (shadow, sheet, chart, lamps, sunlight, prepared.density.values.shape), (columns, rows)
-    return Loaded(prepared, arrays, glass, *surfaces, *extent, opaque.wall_count, people, palette, paper)
+    moved = highest, Rig(prepared)
+    return Loaded(prepared, arrays, glass, *surfaces, *extent, *moved, opaque.wall_count, people, palette, paper)
 
 
 def _chart(
@@ -188,15 +192,16 @@ def _floor(prepared: Prepared, backend: Backend) -> tuple[Any, int, int]:
 
 def _tops(
     prepared: Prepared, arrays: dict[str, Any], cells: tuple[int, int], style: Style, backend: Backend
-) -> Any:
-    """How high the furniture is over each of these cells."""
+) -> tuple[Any, float]:
+    """How high the furniture is over each of these cells, and over which height nothing touches."""
     from .kernels import contact  # only now: it imports taichi
 
     tops = backend.upload(np.full(cells[0] * cells[1], contact.NOWHERE, np.float32))
     if style.occlusion:
         faces = (arrays["vertices"], arrays["faces"], prepared.static_faces)
         contact.find_tops(*faces, arrays["floor"], *cells, tops)
-    return tops
+    furniture = float((tops if backend.on_host else tops.to_numpy()).max()) + contact.REACH[1]
+    return tops, max(furniture, max(prepared.levels) + contact.REACH[0])
 
 
 def _set_shadow(

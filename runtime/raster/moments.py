@@ -11,8 +11,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .device import Backend
+from .detail import COUNT, FINEST
+from .device import Backend, vectorised
 from .loaded import Loaded
+from .resting import Lists, lists_of, needed
 from .types import Style
 
 SHADOW = 512  # texels along a moment's shadow map, for large pictures; half for small ones
@@ -26,75 +28,145 @@ Buffers = Callable[[str, tuple[int, ...], type], Any]
 class Moments:
     """The moments that are drawn at a time, M of them, and one more in which nobody is there.
 
-    position, normal: float32 [M + 1, V, 3] of skinned vertices; ball: float32 [M + 1, C, 4] bounds of moving
-    clusters; of the last one of parts of the set alone, those that ``resting`` int32 [C] says, None without
-    hinges: float32 [M, K, 3, 4], matrices of these parts; frame [M + 1, 3], size, depth, coarse: their shadow
-    maps; ground: [M + 1, 2, rows, columns] how closely things stand over the floor, and over furniture
+    position, normal: float32 [M + 1, V, 3] of skinned vertices; wanted: int32 [M, C], 1 for moving clusters that
+    some view of a moment may show; rests: int32 [C], 1 for those that are in all moments as in the first one,
+    where alone they are wanted; ball: float32 [M + 1, C, 4] bounds of the wanted; of the last moment parts of
+    the set alone, those that ``leaves`` int32 [1, C] says, None without hinges: float32 [M, K, 3, 4], matrices
+    of these parts; frame [M + 1, 3], size, depth, coarse: their shadow maps; ground: [M + 1, 2, rows, columns]
+    how closely things stand over the floor, and over furniture
     """
 
     def __init__(self, backend: Backend, buffer: Buffers, style: Style) -> None:
-        from .kernels import contact, geometry, light  # only now: they import taichi
+        from .kernels import contact, geometry, light, skinning  # only now: they import taichi
 
         self._backend, self._buffer, self._style = backend, buffer, style
-        self._geometry, self._light, self._contact = geometry, light, contact
+        self._geometry, self._light, self._contact, self._skinning = geometry, light, contact, skinning
+        self._blend = vectorised(skinning.skin_blended) if backend.on_host else None
         self.count, self.size = 1, 1
+        nothing = np.zeros((1, 1), np.int32)
+        self.wanted, self.rests = backend.upload(nothing), backend.upload(nothing[0])
 
     def move(
         self,
         loaded: Loaded,
         palettes: NDArray[np.float32],
         height: int,
-        wanted: Any,
-        skinned: int,
-        only: NDArray[np.int32] | None = None,
+        hidden: NDArray[np.int32],
+        lit: bool,
     ) -> None:
         """Take ``palettes`` as the moments, for pictures of ``height`` rows.
 
-        wanted: int32 [C], 1 for clusters that some view may show; skinned: how many vertices are needed
-        only: which ones, where neither shadows nor contact are asked for; None: all, and these as well
+        hidden: int32 [M, W], 0 for what some view of a moment may show; lit: whether shadows and contact are
+        asked for
         """
-        scene, a = loaded.scene, loaded.arrays
+        scene, up = loaded.scene, self._backend.upload
         clusters = len(scene.clusters) - scene.moving_first
-        self._reserve(loaded, len(palettes), height, skinned, only is None)
-        self.resting, self.hinges = None, palettes[:, scene.hinges]
-        if not len(palettes):
+        levels = hidden[:, loaded.walls + loaded.people : hidden.shape[1] - 1]
+        shown = (levels == 0).reshape(len(levels), -1, COUNT)
+        finest = bool(shown[..., FINEST].any())
+        skinned = len(scene.rest) if finest else scene.detail.vertices
+        self._reserve(loaded, len(palettes), height, skinned, lit)
+        self.leaves, self.hinges = None, palettes[:, scene.hinges]
+        if not len(palettes) or not (clusters or loaded.glass is not None):
             return
-        moments, moved = len(palettes), (self.position, self.normal)
-        if clusters or loaded.glass is not None:
-            palette = self._backend.upload(palettes.astype(np.float32))
-            rest = (a["rest"], a["rest_normals"], a["joints"], a["weights"])
-            vertices = np.arange(skinned, dtype=np.int32) if only is None else only
-            self._geometry.skin(palette, *rest, self._backend.upload(vertices), moments, *moved)
+        moments = len(palettes)
+        moving, restless = loaded.rig.moves(palettes)
+        masks, which = needed(scene.detail, shown, lit)
+        self._skin(loaded, palettes, masks, which, moving)
         if not clusters:
             return
-        still = loaded.static_vertices
-        places = (scene.moving_first, still, moments, self.position, self.ball)
-        self._geometry.bound(a["faces"], a["clusters"], wanted, *places)
-        self.resting = self._rest(loaded, palettes) if only is None else None
+        wall = scene.clusters[scene.moving_first :, 3]
+        wanted = (wall < 0) | (hidden[:, wall] == 0)
+        wanted[0] |= wanted.any(axis=0) & ~restless
+        wanted[1:] &= restless
+        self.wanted, self.rests = up(wanted.astype(np.int32)), up((~restless).astype(np.int32))
+        self._bound(loaded, self.wanted, moments, self.position, self.ball)
+        self.leaves = self._rest(loaded, palettes) if lit else None
         if self.size > 1:
             self._cast(loaded, moments, skinned)
-        if self._style.occlusion and only is None:
-            spare = self._buffer("spare", (moments * loaded.rows * loaded.columns,), np.float32)
-            floor = (a["floor"], a["tops"], loaded.columns, loaded.rows, spare, self.ground)
-            crew = self._backend.crew(moments)
-            self._contact.touch(self.position, a["area"], a["solid"], moments, *floor, *crew)
+        if self._style.occlusion and lit:
+            self._touch(loaded, moments, moving)
+
+    def _skin(
+        self,
+        loaded: Loaded,
+        palettes: NDArray[np.float32],
+        masks: NDArray[np.bool_],
+        which: NDArray[np.int32],
+        moving: NDArray[np.bool_],
+    ) -> None:
+        """Move the vertices that each moment needs; masks [L, V], which [M]: of :func:`needed`."""
+        still = masks & ~moving
+        self._blended(loaded, palettes, lists_of(masks & moving, which), self.position, self.normal)
+        everywhere = lists_of(still.any(axis=0)[None], np.zeros(1, np.int32))
+        if everywhere.empty:
+            return
+        self._blended(loaded, palettes[:1], everywhere, self.position, self.normal)
+        lists, up = lists_of(still, which), self._backend.upload
+        told = (up(lists.vertices), up(lists.begin), up(lists.which))
+        self._skinning.repeat(*told, 0, len(palettes), self.position, self.normal)
+
+    def _blended(
+        self, loaded: Loaded, palettes: NDArray[np.float32], lists: Lists, position: Any, normal: Any
+    ) -> None:
+        """Skin the vertices of lists in their moments."""
+        if lists.empty:
+            return
+        a, up, moments = loaded.arrays, self._backend.upload, len(palettes)
+        rest = (a["rest"], a["rest_normals"], a["joints"], a["weights"])
+        told = (up(lists.vertices), up(lists.begin), up(lists.which), moments)
+        if self._blend is None:
+            matrices = up(palettes.astype(np.float32))
+            self._skinning.skin(matrices, *rest, *told, position, normal)
+            return
+        lanes, entries, workers = self._skinning.LANES, palettes.shape[1], self._backend.threads
+        wide = self._buffer("matrices", (moments * entries * lanes,), np.float32)
+        wide[: moments * entries * lanes].reshape(-1, lanes)[:, :12] = palettes.reshape(-1, 12)
+        work = self._buffer("blends", (workers * lanes,), np.float32)
+        memory = (work.reshape(-1, lanes), work)
+        crew = self._backend.crew(moments * self._skinning.PARTS)[:2]
+        matrices = wide.reshape(-1, lanes)
+        self._blend(matrices, entries, *rest, *told, *memory, position, normal, *crew, workers)
+
+    def _bound(self, loaded: Loaded, wanted: Any, moments: int, position: Any, ball: Any) -> None:
+        a, first = loaded.arrays, loaded.scene.moving_first
+        places = (first, loaded.static_vertices, moments, position, ball)
+        self._geometry.bound(a["faces"], a["clusters"], wanted, *places)
+
+    def _touch(self, loaded: Loaded, moments: int, moving: NDArray[np.bool_]) -> None:
+        """What stands on the floor and on furniture: of what rests, found once."""
+        a, up, cells = loaded.arrays, self._backend.upload, 2 * loaded.rows * loaded.columns
+        counted = self._buffer("counted", (moments * cells,), np.int32)
+        runs, resting = loaded.rig.touching(moving)
+        base = self._buffer("resting", (cells,), np.int32)
+        nothing = self._buffer("nothing", (cells,), np.int32)
+        floor = (a["floor"], a["tops"], loaded.highest, loaded.columns, loaded.rows)
+        for count, some, begin, out in ((1, resting, nothing, base), (moments, runs, base, counted)):
+            if out is base and not len(some):
+                base.fill(0)
+                continue
+            queue, slots, host = self._backend.crew(count)
+            stretch = slots // self._backend.threads if host else 1
+            spare = self._buffer("spare", (slots // stretch * cells // 2 * 3,), np.int32)
+            things = (self.position, a["area"], a["solid"], up(some), count)
+            crew = (queue, slots, stretch, host)
+            self._contact.touch(*things, *floor, begin, spare, out, self.ground, *crew)
 
     def _rest(self, loaded: Loaded, palettes: NDArray[np.float32]) -> Any:
         """In the moment in which nobody is there, parts of the set that move, as they are in the first one.
 
-        Returns which clusters these are, int32 [C]; None where there are none, and but on the host.
+        Returns which clusters these are, int32 [1, C]; None where there are none, and but on the host.
         """
-        scene, a = loaded.scene, loaded.arrays
+        scene = loaded.scene
         if not self._backend.on_host or not len(scene.leaves):
             return None
-        wanted = np.zeros(len(scene.clusters), np.int32)
-        wanted[scene.moving_first : scene.loose_first] = 1
+        wanted = np.zeros((1, len(scene.clusters) - scene.moving_first), np.int32)
+        wanted[:, : scene.loose_first - scene.moving_first] = 1
         here = slice(len(palettes), len(palettes) + 1)
-        rest = (a["rest"], a["rest_normals"], a["joints"], a["weights"], scene.leaves, 1)
-        first = np.ascontiguousarray(palettes[:1], np.float32)
-        self._geometry.skin(first, *rest, self.position[here], self.normal[here])
-        places = (scene.moving_first, loaded.static_vertices, 1, self.position[here], self.ball[here])
-        self._geometry.bound(a["faces"], a["clusters"], wanted, *places)
+        whole = np.array([0, len(scene.leaves)], np.int32)
+        leaves = Lists(scene.leaves, whole, np.zeros(1, np.int32))
+        self._blended(loaded, palettes[:1], leaves, self.position[here], self.normal[here])
+        self._bound(loaded, wanted, 1, self.position[here], self.ball[here])
         return wanted
 
     def _reserve(self, loaded: Loaded, palettes: int, height: int, skinned: int, lit: bool) -> None:

@@ -51,9 +51,9 @@ class Prepared:
     one_color: int32 [S], 1 where all faces of a surface have one colour
     moving_surface: index of the first skinned surface; static_faces: number of static triangles
     set_casters, casters: int32, triangles that throw shadows, static and skinned; area: float32 [K], square
-    metres a skinned vertex stands for; solid: float32 [K], the same without what is flat; density: surface
-    of the set in the air; stage: corners of what stands in it; levels: heights of its floors; detail: the
-    levels of bodies; head: uint8 [F], 1 for a triangle of a head, 2 for one of its front
+    metres a skinned vertex stands for; solid: float32 [K], the same without what is flat; owner: int32 [K],
+    the object it is of; density: surface of the set in the air; stage: corners of what stands in it; levels:
+    heights of its floors; detail: the levels of bodies; head: uint8 [F], 1 for a triangle of a head, 2 for one of its front
     """
 
     vertices: NDArray[np.float32]
@@ -77,6 +77,7 @@ class Prepared:
     casters: NDArray[np.int32]
     area: NDArray[np.float32]
     solid: NDArray[np.float32]
+    owner: NDArray[np.int32]
     density: Volume
     stage: tuple[NDArray[np.float64], NDArray[np.float64]]
     levels: tuple[float, ...]
@@ -207,7 +208,8 @@ def prepare(scene: RenderScene, style: Style, on_host: bool = False) -> Prepared
     one_sided = scene.static_wall == ONE_SIDED
     static_wall = np.where(one_sided, np.int32(-1), scene.static_wall)
     static_cull = closed_faces(scene.static, scene.static_object) | one_sided
-    touching, solid = _touching_area(scene), _solid_area(scene)
+    owner = _owners(scene)
+    touching, solid = _touching_area(scene), _solid_area(scene, owner)
     moving_cull = closed_faces(scene.skinned, scene.skinned_object)
     detail = with_levels(scene)
     scene, moving_cull = detail.scene, moving_cull[detail.source]
@@ -273,6 +275,7 @@ def prepare(scene: RenderScene, style: Style, on_host: bool = False) -> Prepared
         casters=(_casters(skinned, fitting, casting[moving_order]) + len(order)).astype(np.int32),
         area=touching,
         solid=solid,
+        owner=owner,
         density=density_volume(static, set_casters, on_host),
         stage=stage_bounds(static, set_casters),
         levels=scene.levels,
@@ -310,8 +313,15 @@ def _touching_area(scene: RenderScene) -> NDArray[np.float32]:
     return area
 
 
-def _solid_area(scene: RenderScene) -> NDArray[np.float32]:
-    """The same of what keeps light off the furniture it lies on: nothing of a sheet of paper."""
+def _owners(scene: RenderScene) -> NDArray[np.int32]:
+    """The object that each skinned vertex is of, int32 [K]; 0 for those of no face."""
+    owner = np.zeros(len(scene.skinned.vertices), np.int32)
+    owner[scene.skinned.faces.reshape(-1)] = np.repeat(scene.skinned_object, 3)
+    return owner
+
+
+def _solid_area(scene: RenderScene, owner: NDArray[np.int32]) -> NDArray[np.float32]:
+    """Of these vertices, what keeps light off the furniture it lies on: nothing of a sheet of paper."""
     area, faces = _touching_area(scene), scene.skinned.faces
     if not len(faces):
         return area
@@ -320,8 +330,6 @@ def _solid_area(scene: RenderScene) -> NDArray[np.float32]:
     low, high = np.full(count, np.inf, np.float32), np.full(count, -np.inf, np.float32)
     np.minimum.at(low, scene.skinned_object, height[faces].min(axis=1))
     np.maximum.at(high, scene.skinned_object, height[faces].max(axis=1))
-    owner = np.zeros(len(area), np.int32)
-    owner[faces.reshape(-1)] = np.repeat(scene.skinned_object, 3)
     tall = np.where(np.isfinite(low), high - low, 0.0)
     return np.asarray(area * np.minimum(tall[owner] / _SOLID, 1.0), np.float32)
 

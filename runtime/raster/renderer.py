@@ -129,7 +129,7 @@ class Renderer:
                     used, inverse = np.unique(moment[moved], return_inverse=True)
                     local = inverse.reshape(-1).astype(np.int32)
                     some = palettes[used] if len(palettes) else palettes
-                    self._move(content, some, height, hidden[moved], pictures)
+                    self._move(content, some, local, height, hidden[moved], pictures)
                 self._draw(
                     view[part],
                     local[begin - moved.start : part.stop - moved.start],
@@ -208,24 +208,22 @@ class Renderer:
         self,
         content: Loaded,
         palettes: NDArray[np.float32],
+        moment: NDArray[np.int32],
         height: int,
         hidden: NDArray[np.int32],
         pictures: bool,
     ) -> None:
-        """Make ``palettes`` the moments that are drawn; of what is not shaded, or plainly, nothing else."""
-        scene, moments = content.scene, self._moments
-        wall = scene.clusters[:, 3]
-        shown = (wall < 0) | (hidden == 0).any(axis=0)[wall]
-        wanted = self.backend.upload(shown.astype(np.int32))
-        only = None
-        if self._plain is not None or not pictures:
-            levels = slice(content.walls + content.people, hidden.shape[1] - 1)
-            shown = (hidden[:, levels] == 0).any(axis=0).reshape(-1, COUNT)
-            only = scene.detail.used(shown)
-        moments.move(content, palettes, height, wanted, skinned(content, hidden), only)
-        clusters = len(scene.clusters) - scene.moving_first
-        some = moments.count if clusters else 0
-        self._visibility.move(moments.position, moments.ball, wanted, some, moments.resting)
+        """Make ``palettes`` the moments that are drawn; of what is not shaded, or plainly, nothing else.
+
+        moment, hidden: of the views that look at them
+        """
+        moments = self._moments
+        by_moment = np.ones((len(palettes), hidden.shape[1]), np.int32)
+        np.minimum.at(by_moment, moment, hidden)
+        moments.move(content, palettes, height, by_moment, pictures and self._plain is None)
+        some = moments.count if len(content.scene.clusters) > content.scene.moving_first else 0
+        moved = (moments.position, moments.ball, moments.wanted, moments.rests)
+        self._visibility.move(*moved, some, moments.leaves)
         if self._glazing is not None:
             self._glazing.move(moments)
 

@@ -62,18 +62,21 @@ class Visibility:
         self._scene, self._arrays = scene, arrays
         if self._backend.on_host:
             vertices = arrays["vertices"].reshape(1, -1, 3)
-            wanted = np.ones(len(scene.clusters) + 1, np.int32)
             count = scene.moving_first
+            wanted = np.ones((1, count + 1), np.int32)
             self._still = self._buffer("still", (max(count, 1) * self._each,), np.float32)
             self._arrange(self._still, wanted, (0, count), 0, 1, vertices)
 
-    def move(self, position: Any, ball: Any, wanted: Any, moments: int, resting: Any = None) -> None:
+    def move(
+        self, position: Any, ball: Any, wanted: Any, rests: Any, moments: int, leaves: Any = None
+    ) -> None:
         """Take over the skinned vertices [M, V, 3] and the bounds of the moving clusters [M, C, 4].
 
-        wanted: int32 [C], 1 where some view may show a cluster; resting: the same of one moment more, the
-        last one, in which nobody is there; None without it
+        wanted: int32 [M, C], 1 where some view may show a cluster; rests: int32 [C], 1 for those that are only
+        wanted in the first moment, and taken over from it; leaves: int32 [1, C], the wanted ones of one moment
+        more, the last one, in which nobody is there; None without it
         """
-        self._position, self._ball = position, ball
+        self._position, self._ball, self._rests = position, ball, rests
         scene = self._scene
         if self._backend.on_host:
             part = (scene.moving_first, len(scene.clusters) - scene.moving_first)
@@ -81,8 +84,8 @@ class Visibility:
             self._moving = self._buffer("moving", ((moments + 1) * max(each, self._each),), np.float32)
             offset = len(scene.vertices)
             self._arrange(self._moving, wanted, part, offset, moments, position)
-            if resting is not None:
-                last = (self._moving[moments * each :], resting, part, offset, 1, position[moments:])
+            if leaves is not None:
+                last = (self._moving[moments * each :], leaves, part, offset, 1, position[moments:])
                 self._arrange(*last)
 
     @property
@@ -179,6 +182,7 @@ class Visibility:
             a["sphere"],
             self._ball,
             scene.moving_first,
+            self._rests,
             part,
             self._still.reshape(-1, lanes),
             self._moving.reshape(-1, lanes),

@@ -15,6 +15,9 @@ from .geometry import f1, f2, f3, i1, i2, vec3
 LOWEST, HIGHEST = 0.25, 1.6  # metres over the floor between which furniture ends above
 UPWARD = 0.9  # how far up what things stand on faces
 NOWHERE = -1e9  # the top of what is not there
+REACH = (0.4, 0.25)  # metres over the floor, or over furniture, from which on a thing leaves no shadow
+BLURS = (3, 2)  # times; what stands on furniture is smaller
+UNIT, MOST = 512.0, 500.0  # whole numbers of each surface a cell; the most of a vertex, far beyond black
 
 
 @ti.func
@@ -72,68 +75,97 @@ def touch(
     position: f3,
     area: f1,
     solid: f1,
+    runs: i2,
     moments: ti.i32,
     floor: f1,
     tops: f1,
+    highest: ti.f32,
     columns: ti.i32,
     rows: ti.i32,
-    spare: f1,
+    resting: i1,
+    spare: i1,
+    counted: i1,
     ground: f1,
     queue: i1,
     slots: ti.i32,
+    stretch: ti.i32,
     host: ti.template(),
 ):
     """How closely moving things stand over each cell of the floor, and of what is on it, blurred:
     ground [M, 2, rows, columns], the floor and the tops of furniture.
 
     area: surface each skinned vertex stands for, square metres; solid: the same without what is flat
-    floor: corner x, y, cells a metre, then the heights of the floors, rising; tops: of :func:`find_tops`
+    runs [R, 2]: first vertex and the one after the last of things, or parts of them
+    floor: corner x, y, cells a metre, then the heights of the floors, rising; tops: of :func:`find_tops`;
+    highest: over which nothing counts
+    resting [2, rows, columns]: what is there in all moments, as ``counted`` [M, 2, rows, columns] gives it:
+    in whole numbers, so that it does not matter what is counted first
+    spare: scratch of 3 * rows * columns for every ``stretch`` slots, all 0 before and after
     """
     for slot in range(slots):
         m = crew.task(slot, moments, queue, host)
         if m < moments:
             cells = rows * columns
+            own, begin = slot // stretch * (3 * cells), 2 * m * cells
+            blurred = own + 2 * cells
             for i in range(2 * cells):
-                ground[2 * m * cells + i] = 0.0
-            low, high = ti.Vector([columns, rows, columns, rows]), ti.Vector([-1, -1, -1, -1])
-            for v in range(area.shape[0]):
-                p = vec3(position[m, v, 0], position[m, v, 1], position[m, v, 2])
-                cell = floor_cell(p, floor, columns, rows)
-                if cell >= 0:
-                    for layer in ti.static(range(2)):
-                        over = above_floor(p.z, floor) if ti.static(layer == 0) else p.z - tops[cell]
-                        reach = ti.static((0.4, 0.25)[layer])
-                        if over < reach and ti.static((-1e9, -0.1)[layer]) < over:
-                            share = 1.0 - ti.max(over, 0.0) / reach
-                            own = area[v] if ti.static(layer == 0) else solid[v]
-                            at_cell = (2 * m + layer) * cells + cell
-                            # written out: one thread has the moment, and += would be an atomic addition
-                            ground[at_cell] = ground[at_cell] + own * share * share * floor[2] * floor[2]
-                            at = ti.Vector([cell % columns, cell // columns])
-                            for a in ti.static(range(2)):
-                                low[2 * layer + a] = ti.min(low[2 * layer + a], at[a])
-                                high[2 * layer + a] = ti.max(high[2 * layer + a], at[a])
-            for layer in range(2):
-                base = (2 * m + layer) * cells
-                left, right, bottom, top = low[0], high[0], low[1], high[1]
-                if layer == 1:
-                    left, right, bottom, top = low[2], high[2], low[3], high[3]
-                if right >= 0:
-                    left, right = ti.max(left - 8, 0), ti.min(right + 9, columns)
-                    bottom, top = ti.max(bottom - 8, 0), ti.min(top + 9, rows)
-                    for _ in range(3 - layer):  # what stands on furniture is smaller
-                        for y in range(bottom, top):
+                counted[begin + i] = resting[i]
+            density = floor[2] * floor[2]
+            for run in range(runs.shape[0]):
+                box = ti.Matrix([[columns, -1, rows, -1], [columns, -1, rows, -1]])
+                for v in range(runs[run, 0], runs[run, 1]):
+                    p = vec3(position[m, v, 0], position[m, v, 1], position[m, v, 2])
+                    cell = -1
+                    if p.z < highest:
+                        cell = floor_cell(p, floor, columns, rows)
+                    if cell >= 0:
+                        for layer in ti.static(range(2)):
+                            over = above_floor(p.z, floor) if ti.static(layer == 0) else p.z - tops[cell]
+                            reach = ti.static(REACH[layer])
+                            if over < reach and ti.static((-1e9, -0.1)[layer]) < over:
+                                share = 1.0 - ti.max(over, 0.0) / reach
+                                amount = (area[v] if ti.static(layer == 0) else solid[v]) * share * share
+                                x, y, at = cell % columns, cell // columns, own + layer * cells + cell
+                                # written out: one thread has the moment, and += would be an atomic addition
+                                spare[at] = spare[at] + ti.cast(ti.min(amount * density, MOST) * UNIT + 0.5, ti.i32)
+                                box[layer, 0] = ti.min(box[layer, 0], x)
+                                box[layer, 1] = ti.max(box[layer, 1], x)
+                                box[layer, 2] = ti.min(box[layer, 2], y)
+                                box[layer, 3] = ti.max(box[layer, 3], y)
+                for layer in ti.static(range(2)):
+                    if box[layer, 1] >= 0:
+                        base = own + layer * cells
+                        left, right = box[layer, 0], box[layer, 1] + 1
+                        low, high = box[layer, 2], box[layer, 3] + 1
+                        for _ in range(ti.static(BLURS[layer])):
+                            left, right = ti.max(left - 1, 0), ti.min(right + 1, columns)
+                            low, high = ti.max(low - 1, 0), ti.min(high + 1, rows)
+                            for y in range(low, high):
+                                for x in range(left, right):
+                                    at = base + y * columns + x
+                                    a = spare[at - 1] if x > left else 0
+                                    b = spare[at + 1] if x < right - 1 else 0
+                                    spare[blurred + y * columns + x] = a + spare[at] + b
+                            for y in range(low, high):
+                                for x in range(left, right):
+                                    at = blurred + y * columns + x
+                                    a = spare[at - columns] if y > low else 0
+                                    b = spare[at + columns] if y < high - 1 else 0
+                                    spare[base + y * columns + x] = a + spare[at] + b
+                        for y in range(low, high):
                             for x in range(left, right):
-                                at = base + y * columns + x
-                                a = ground[at - 1] if x > left else 0.0
-                                b = ground[at + 1] if x < right - 1 else 0.0
-                                spare[at - base + m * cells] = (a + ground[at] + b) / 3.0
-                        for y in range(bottom, top):
-                            for x in range(left, right):
-                                at = m * cells + y * columns + x
-                                a = spare[at - columns] if y > bottom else 0.0
-                                b = spare[at + columns] if y < top - 1 else 0.0
-                                ground[base + y * columns + x] = (a + spare[at] + b) / 3.0
+                                at = layer * cells + y * columns + x
+                                counted[begin + at] = counted[begin + at] + spare[own + at]
+                                spare[own + at] = 0
+            for i in range(cells):
+                ground[begin + i] = ti.cast(counted[begin + i], ti.f32) * ti.static(scale(0))
+            for i in range(cells, 2 * cells):
+                ground[begin + i] = ti.cast(counted[begin + i], ti.f32) * ti.static(scale(1))
+
+
+def scale(layer: int) -> float:
+    """What one of the whole numbers counts that are summed up, blurred."""
+    return 1.0 / (UNIT * 9.0 ** BLURS[layer])
 
 
 @ti.func

@@ -50,7 +50,7 @@ iv = ti.types.ndarray(dtype=ti.types.vector(LANES, ti.i32), ndim=1)
 def arrange(
     faces: i2,
     clusters: i2,
-    wanted: i1,
+    wanted: i2,
     first: ti.i32,
     count: ti.i32,
     offset: ti.i32,
@@ -61,13 +61,14 @@ def arrange(
     """Corners of the triangles of those of ``count`` clusters from ``first`` on that are wanted, sixteen of a
     kind side by side.
 
+    wanted: [M, count], 1 or 0
     position [M, V, 3], of vertices counted from ``offset`` on; out: [M, count, GROUPS, CORNERS, LANES]
     """
     for i in range(moments * count):
         m = i // count
         c = first + i % count
         base = i * (GROUPS * CORNERS * LANES)
-        for k in range(clusters[c, 1] * wanted[c]):
+        for k in range(clusters[c, 1] * wanted[m, i % count]):
             t = clusters[c, 0] + k
             at = base + (k // LANES) * (CORNERS * LANES) + k % LANES
             for j in ti.static(range(3)):
@@ -103,6 +104,7 @@ def gather(
     sphere: f2,
     moving_sphere: f3,
     moving_first: ti.i32,
+    rests: i1,
     part: i2,
     still: fv,
     moving: fv,
@@ -122,7 +124,8 @@ def gather(
 ):
     """The triangles of each view that may cover the centre of a pixel, as they are on the screen.
 
-    clusters [C, 4]: first triangle, count, cull, wall; part [views, 2]: from which to which is drawn
+    clusters [C, 4]: first triangle, count, cull, wall; rests [moving clusters]: 1 for those that are in all
+    moments as in the first one, where alone they are; part [views, 2]: from which to which is drawn
     still, moving: their corners (:func:`arrange`)
     work [views * 10]: scratch, ``lane`` its memory; corner [views, 2 F, CORNERS], tag [views, 2 F, TAGS]:
     what is found; clipped [views, F]: triangles across the near plane; counts [views, 2]: how many of both
@@ -144,10 +147,13 @@ def gather(
             for c in range(part[n, 0], part[n, 1]):
                 b0, b1, b2, radius = 0.0, 0.0, 0.0, 0.0
                 moves = c >= moving_first
+                m = moment[n]
                 if moves:
                     k = c - moving_first
-                    b0, b1 = moving_sphere[moment[n], k, 0], moving_sphere[moment[n], k, 1]
-                    b2, radius = moving_sphere[moment[n], k, 2], moving_sphere[moment[n], k, 3]
+                    if rests[k] != 0:
+                        m = 0
+                    b0, b1 = moving_sphere[m, k, 0], moving_sphere[m, k, 1]
+                    b2, radius = moving_sphere[m, k, 2], moving_sphere[m, k, 3]
                 else:
                     b0, b1, b2, radius = sphere[c, 0], sphere[c, 1], sphere[c, 2], sphere[c, 3]
                 b0 -= e0
@@ -168,7 +174,7 @@ def gather(
                         bx, by, bz = V(0.0), V(0.0), V(0.0)
                         cx, cy, cz = V(0.0), V(0.0), V(0.0)
                         if moves:
-                            at = ((moment[n] * movers + c - moving_first) * GROUPS + g) * CORNERS
+                            at = ((m * movers + c - moving_first) * GROUPS + g) * CORNERS
                             ax = turned(moving, at, e0, e1, e2, r0, r1, r2)
                             ay = turned(moving, at, e0, e1, e2, u0, u1, u2)
                             az = turned(moving, at, e0, e1, e2, g0, g1, g2)

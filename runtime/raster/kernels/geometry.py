@@ -1,4 +1,4 @@
-"""Geometry: skinning, bounds, and triangles into the visibility buffer.
+"""Geometry: bounds, and triangles into the visibility buffer.
 
 The visibility buffer holds, per pixel, ``depth key << 32 | triangle + 1`` and keeps the largest: the
 key is the bit pattern of 1/z, which is linear over the picture and orders like the number it is.
@@ -67,52 +67,20 @@ def rays(view: ti.template(), n, y):
 
 
 @ti.kernel
-def skin(
-    palette: f4,
-    rest: f2,
-    rest_normal: f2,
-    joints: i2,
-    weights: f2,
-    vertices: i1,
-    moments: ti.i32,
-    position: f3,
-    normal: f3,
-):
-    """Linear blend skinning of some vertices in the first ``moments`` palettes."""
-    count = vertices.shape[0]
-    for i in range(moments * count):
-        m = i // count
-        v = vertices[i % count]
-        p = row3(rest, v)
-        q = row3(rest_normal, v)
-        out = vec3(0)
-        out_normal = vec3(0)
-        for k in range(4):
-            w = weights[v, k]
-            if w > 0:
-                j = joints[v, k]
-                for a in ti.static(range(3)):
-                    r = vec3(palette[m, j, a, 0], palette[m, j, a, 1], palette[m, j, a, 2])
-                    out[a] += w * (r.dot(p) + palette[m, j, a, 3])
-                    out_normal[a] += w * r.dot(q)
-        out_normal /= ti.max(out_normal.norm(), 1e-12)
-        for a in ti.static(range(3)):
-            position[m, v, a] = out[a]
-            normal[m, v, a] = out_normal[a]
-
-
-@ti.kernel
 def bound(
     faces: i2,
     clusters: i2,
-    wanted: i1,
+    wanted: i2,
     first: ti.i32,
     static_vertices: ti.i32,
     moments: ti.i32,
     position: f3,
     sphere: f3,
 ):
-    """Bounding spheres of the moving clusters (from ``first`` on) that are wanted, at every moment."""
+    """Bounding spheres of the moving clusters (from ``first`` on), of each moment those that are wanted.
+
+    wanted: [M, moving clusters], 1 or 0
+    """
     count = clusters.shape[0] - first
     for i in range(moments * count):
         m = i // count
@@ -120,7 +88,7 @@ def bound(
         low = vec3(1e30)
         high = vec3(-1e30)
         begin = clusters[first + c, 0]
-        for t in range(begin, begin + clusters[first + c, 1] * wanted[first + c]):
+        for t in range(begin, begin + clusters[first + c, 1] * wanted[m, c]):
             for k in ti.static(range(3)):
                 p = item3(position, m, faces[t, k] - static_vertices)
                 low = ti.min(low, p)

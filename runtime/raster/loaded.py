@@ -133,7 +133,9 @@ def loaded(scene: RenderScene, style: Style, backend: Backend, shading: Any) -> 
     paper = paper_level(opaque.light), gloom(opaque.light)
     surfaces, extent = (shadow, sheet, chart, lamps, sunlight, prepared.density.values.shape), (columns, rows)
     moved = highest, Rig(prepared)
-    return Loaded(prepared, arrays, glass, *surfaces, *extent, *moved, opaque.wall_count, people, palette, paper)
+    return Loaded(
+        prepared, arrays, glass, *surfaces, *extent, *moved, opaque.wall_count, people, palette, paper
+    )
 
 
 def _chart(

@@ -28,12 +28,13 @@ Buffers = Callable[[str, tuple[int, ...], type], Any]
 class Moments:
     """The moments that are drawn at a time, M of them, and one more in which nobody is there.
 
-    position, normal: float32 [M + 1, V, 3] of skinned vertices; wanted: int32 [M, C], 1 for moving clusters that
-    some view of a moment may show; rests: int32 [C], 1 for those that are in all moments as in the first one,
-    where alone they are wanted; ball: float32 [M + 1, C, 4] bounds of the wanted; of the last moment parts of
-    the set alone, those that ``leaves`` int32 [1, C] says, None without hinges: float32 [M, K, 3, 4], matrices
-    of these parts; frame [M + 1, 3], size, depth, coarse: their shadow maps; ground: [M + 1, 2, rows, columns]
-    how closely things stand over the floor, and over furniture
+    position, normal: float32 [M + 1, V, 3] of skinned vertices
+    wanted: int32 [M, C], 1 for moving clusters that some view of a moment may show; rests: int32 [C], 1 for
+    those that are in all moments as in the first one, where alone they are wanted; ball: float32
+    [M + 1, C, 4], bounds of the wanted ones; leaves: int32 [1, C], those of the last moment, parts of the set
+    that move, None without; hinges: float32 [M, K, 3, 4], matrices of these
+    frame [M + 1, 3], size, depth, coarse: shadow maps; ground: [M + 1, 2, rows, columns] how closely things
+    stand over the floor, and over furniture
     """
 
     def __init__(self, backend: Backend, buffer: Buffers, style: Style) -> None:
@@ -98,7 +99,7 @@ class Moments:
         """Move the vertices that each moment needs; masks [L, V], which [M]: of :func:`needed`."""
         still = masks & ~moving
         self._blended(loaded, palettes, lists_of(masks & moving, which), self.position, self.normal)
-        everywhere = lists_of(still.any(axis=0)[None], np.zeros(1, np.int32))
+        everywhere = lists_of(np.any(still, axis=0, keepdims=True), np.zeros(1, np.int32))
         if everywhere.empty:
             return
         self._blended(loaded, palettes[:1], everywhere, self.position, self.normal)

@@ -53,7 +53,8 @@ class Prepared:
     set_casters, casters: int32, triangles that throw shadows, static and skinned; area: float32 [K], square
     metres a skinned vertex stands for; solid: float32 [K], the same without what is flat; owner: int32 [K],
     the object it is of; density: surface of the set in the air; stage: corners of what stands in it; levels:
-    heights of its floors; detail: the levels of bodies; head: uint8 [F], 1 for a triangle of a head, 2 for one of its front
+    heights of its floors; detail: the levels of bodies; head: uint8 [F], 1 for a triangle of a head, 2 for one
+    of its front
     """
 
     vertices: NDArray[np.float32]

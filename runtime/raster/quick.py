@@ -3,8 +3,8 @@
 Taichi reads the source of every kernel anew in each process, even where the compiled kernel is kept, and
 spends most of that time on laying out source lines for error messages that nobody will see. And with every
 call it asks anew what kinds of arguments there are, which takes longer than many a kernel: here that is
-remembered. Assumes Taichi 1.7; where its insides are named otherwise, everything stays as it is. Guarantees the
-same kernels: only the pictures of source lines in compile errors are plainer.
+remembered. Assumes Taichi 1.7; where its insides are named otherwise, everything stays as it is. Guarantees
+the same kernels: only the pictures of source lines in compile errors are plainer.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ import linecache
 import sys
 import textwrap
 from collections.abc import Callable
-from functools import lru_cache, wraps
+from functools import cache, lru_cache, wraps
 from types import SimpleNamespace
 from typing import Any, NamedTuple
 
@@ -41,8 +41,7 @@ def quicken() -> None:
     fill = lru_cache(maxsize=None)(textwrap.fill)
     kernel_impl.textwrap = SimpleNamespace(fill=fill, dedent=textwrap.dedent)
     kernel_impl._inside_class = _inside_class
-    needed = ("ensure_compiled", "extract_arguments", "launch_kernel")
-    if all(hasattr(kernel_impl.Kernel, n) for n in needed):
+    if all(hasattr(kernel_impl.Kernel, n) for n in ("ensure_compiled", "launch_kernel")):
         kernel_impl.Kernel.__call__ = _remembering(kernel_impl.Kernel.__call__)
 
 
@@ -70,7 +69,7 @@ def _source_of(otherwise: Callable[..., Any]) -> Callable[..., Any]:
     return found
 
 
-@lru_cache(maxsize=None)
+@cache
 def _ends(file: str) -> dict[int, int]:
     """The last line of each function of a file, by its first one, which may be a decorator."""
     try:
@@ -88,8 +87,9 @@ def _ends(file: str) -> dict[int, int]:
 
 
 class _Known(NamedTuple):
-    """What is remembered of a kernel. program: for which; kinds: of its parameters, None where one of them cannot
-    be passed quickly; compiled: the kernel and its code for each kind of arguments it was called with"""
+    """What is remembered of a kernel. program: for which; kinds: of its parameters, None where one of them
+    cannot be passed quickly; compiled: the kernel and its code for each kind of arguments it was called
+    with"""
 
     program: Any
     kinds: tuple[int, ...] | None
@@ -97,8 +97,8 @@ class _Known(NamedTuple):
 
 
 def _remembering(call: Callable[..., Any]) -> Callable[..., Any]:
-    """``Kernel.__call__``, that passes arrays of the host and numbers straight on where a call of the same kind
-    has been checked before."""
+    """``Kernel.__call__``, that passes arrays of the host and numbers straight on where a call of the same
+    kind has been checked before."""
 
     @wraps(call)
     def called(self: Any, *arguments: Any, **named: Any) -> Any:
@@ -156,7 +156,7 @@ def _kinds(kernel: Any) -> tuple[int, ...] | None:
 
 
 def _signature(kinds: tuple[int, ...], arguments: tuple[Any, ...]) -> tuple[Any, ...] | None:
-    """What the code of a kernel depends on, and whether its arguments may be passed; None where not quickly."""
+    """What the code of a kernel depends on, of its arguments; None where they cannot be passed quickly."""
     if len(kinds) != len(arguments):
         return None
     out: list[Any] = []
@@ -176,9 +176,7 @@ def _signature(kinds: tuple[int, ...], arguments: tuple[Any, ...]) -> tuple[Any,
     return tuple(out)
 
 
-def _launch(
-    program: Any, kernel: Any, code: Any, kinds: tuple[int, ...], arguments: tuple[Any, ...]
-) -> None:
+def _launch(program: Any, kernel: Any, code: Any, kinds: tuple[int, ...], arguments: tuple[Any, ...]) -> None:
     """As ``Kernel.launch_kernel`` does it, of arguments that need no further look."""
     context, place = kernel.make_launch_context(), 0
     pass_array, pass_whole, pass_real = (

@@ -1,7 +1,7 @@
 """What rests while other things move: moved once for all moments of a batch, and taken over in the others.
 
-Assumes palettes of one scene. Guarantees that a vertex is said to rest only where all the matrices that move it
-are the same in all moments, to the bit.
+Assumes palettes of one scene. Guarantees that a vertex is said to rest only where all the matrices that move
+it are the same in all moments, to the bit.
 """
 
 from __future__ import annotations
@@ -56,7 +56,10 @@ class Rig:
         self._touching = scene.area > 0
 
     def moves(self, palettes: NDArray[np.float32]) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
-        """The vertices and the moving clusters that are not in all moments [M, P, 3, 4] as in the first one."""
+        """The vertices, and the moving clusters, that are not in all moments as in the first one.
+
+        palettes: [M, P, 3, 4]; of one moment everything is said to move
+        """
         if len(palettes) < 2:
             return np.ones(len(self._kind), np.bool_), np.ones(self._clusters, np.bool_)
         words = np.ascontiguousarray(palettes).view(np.uint32)
@@ -89,8 +92,8 @@ def needed(
 ) -> tuple[NDArray[np.bool_], NDArray[np.int32]]:
     """The skinned vertices that moments need, as masks [L, V], and which of them each moment takes, [M].
 
-    shown: [M, bodies, COUNT], the levels of bodies that some view of a moment shows; every: whether all vertices
-    are needed but those of the finest levels
+    shown: [M, bodies, COUNT], the levels of bodies that some view of a moment shows; every: whether all
+    vertices are needed but those of the finest levels
     """
     flat = shown.reshape(len(shown), shown.shape[1] * COUNT)
     patterns, which = np.unique(flat, axis=0, return_inverse=True)

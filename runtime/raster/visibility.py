@@ -72,9 +72,9 @@ class Visibility:
     ) -> None:
         """Take over the skinned vertices [M, V, 3] and the bounds of the moving clusters [M, C, 4].
 
-        wanted: int32 [M, C], 1 where some view may show a cluster; rests: int32 [C], 1 for those that are only
-        wanted in the first moment, and taken over from it; leaves: int32 [1, C], the wanted ones of one moment
-        more, the last one, in which nobody is there; None without it
+        wanted: int32 [M, C], 1 where some view may show a cluster; rests: int32 [C], 1 for those that are
+        wanted in the first moment alone, and taken over from it; leaves: int32 [1, C], the wanted ones of one
+        moment more, the last one, in which nobody is there; None without it
         """
         self._position, self._ball, self._rests = position, ball, rests
         scene = self._scene

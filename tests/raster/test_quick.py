@@ -8,6 +8,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from runtime.raster.device import start
@@ -26,7 +27,7 @@ def test_an_error_in_a_kernel_names_its_place() -> None:
 
     with pytest.raises(ti.TaichiNameError, match="no_such_thing") as caught:
         wrong()
-    assert f'File "{__file__}", line 25, in wrong' in str(caught.value)
+    assert f'File "{__file__}", line 26, in wrong' in str(caught.value)
     assert "print(no_such_thing + 1)" in str(caught.value)
 
 
@@ -98,3 +99,35 @@ def test_the_first_kernel_may_run_on_another_thread_than_the_one_that_started(tm
     subprocess.run(
         [sys.executable, str(script)], env=os.environ | {"PYTHONPATH": root}, check=True, timeout=300
     )
+
+
+def test_a_kernel_is_called_quickly_and_still_checks_what_it_is_given() -> None:
+    start("cpu")
+    import taichi as ti
+    from small_kernels import scaled, total
+
+    for count in (3, 5, 3, 7):  # the second time of a kind nothing is asked, and arrays may be others
+        a, out = np.arange(count, dtype=np.float32), np.zeros(count, np.float32)
+        for twice in (False, True, False):
+            scaled(a, 2, np.int64(1), twice, out)
+            np.testing.assert_array_equal(out, (a * 2 + 1) * (1 + twice))
+    with pytest.raises(ValueError, match="dtype"):
+        scaled(a.astype(np.float64), 2.0, 1, False, out)
+    with pytest.raises(ValueError, match="ndim"):
+        scaled(a.reshape(1, -1), 2.0, 1, False, out)
+    with pytest.raises(ti.TaichiRuntimeTypeError):
+        scaled(a, 2.0, 1.5, False, out)
+    with pytest.raises(ValueError, match=r"[cC]ontiguous"):
+        scaled(np.arange(14, dtype=np.float32)[::2], 2.0, 1, False, out)
+    with pytest.raises(ti.TaichiSyntaxError, match="missing"):
+        scaled(a, 2.0)
+    scaled(a=a, by=1.0, plus=0, twice=False, out=out)
+    np.testing.assert_array_equal(out, a)
+    assert [total(np.arange(n, dtype=np.int32)) for n in (3, 4, 4)] == [3, 6, 6]
+
+
+def test_a_kernel_in_a_class_is_one() -> None:
+    start("cpu")
+    from small_kernels import Counter
+
+    assert [Counter(3).stepped(2), Counter(3).stepped(4)] == [5, 7]

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from runtime.world import World
 
 from . import space
+from .company import company_cut, company_shown
 from .composition import framing, size_error
 from .framing import Array
 from .gestures import face_covered, hands_missed
@@ -48,6 +49,7 @@ MEASURES = (
     "walk_missed",  # share of the way the subject goes on which nothing of it is seen; 0 for a step or two
     "hands_missed",  # share of the time hands are at work in which neither is seen; 0 for close-ups
     "face_covered",  # share of the face that the subject's own arms hide, beyond what they have to
+    "company_cut",  # share of the time somebody beside the subject is in the picture without their head
     "foreground",  # share of the picture covered by something much nearer than the subject
     "face",  # cosine between face and direction to the camera: 1 frontal, 0 profile, −1 from behind
     "clearance",  # metres from the camera to the nearest solid or person, at most 1
@@ -95,6 +97,9 @@ def measure(takes: Takes, subject: Subject, world: World, fps: float) -> Measure
         clear = clear_lines(world.solids, camera, points, hidden, takes.ignore)
         return np.asarray(clear & clear_of_people(camera, points, others))
 
+    def unhidden(points: Array) -> Bools:
+        return clear_lines(world.solids, camera, points, hidden, takes.ignore)
+
     seen = seen_from(sight)
     values["view"] = everybody_seen(takes, subject, at, camera, axes, seen_from)
     values |= visibility(takes, inside[:, :, sight_index], seen)
@@ -107,11 +112,16 @@ def measure(takes: Takes, subject: Subject, world: World, fps: float) -> Measure
     values["interest"] = _interest(takes, shown)
     somebody = in_sight.any(axis=-1) | inside[:, :, names.index("eyes")] | shown.any(axis=-1)
     values["empty"] = 1.0 - somebody.mean(axis=1)
+    values["company_cut"] = company_cut(takes, subject, at, camera, axes, picture, unhidden)
     values["foreground"] = _foreground(takes, world, at, camera, axes, picture, hidden)
     values |= _motion(track, takes.roll, fps)
     values["face"] = _face(takes, subject, at, camera, points[:, names.index("eyes")])
     if len(subject.members) > 1:
         values |= everybody_measured(takes, subject, at, camera, axes, seen_from)
+    if subject.kind == "place":  # nobody misses the edges of the box that stands for it
+        values |= {name: np.zeros(len(camera)) for name in ("head_cut", "feet_cut", "thirds_error")}
+        if subject.company:
+            values |= company_shown(takes, subject, at, camera, axes, unhidden)
     rows, key = np.arange(len(camera)), key_sample(takes, at)
     values["elevation"] = np.degrees(-rotation[rows, key, 1])
     values["height"] = camera[rows, key, 2] - subject.floor

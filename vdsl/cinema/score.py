@@ -30,6 +30,7 @@ PENALTIES = {
     "walk_missed": 0.4,
     "head_cropped": 0.2,
     "hands_missed": 0.15,
+    "company_cut": 0.25,
 }
 
 #: How much a full point of the geometry score moves the odds of a take, in logits: as a prior. By this much

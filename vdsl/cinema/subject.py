@@ -31,6 +31,8 @@ class Subject:
     members: everybody a shot of several has to show, who acts first of all; () for a single one
     via: float64 [T, 3], the head over whose shoulder the camera looks, or the eyes it looks through
     via_face: float64 [T, 3], unit direction its face points
+    company: everybody else who is about, of a place those in it
+    plan: of a place, its bounds on the floor plan, left, low, right, top
     arms: float64 [T, 2, 3, 3], shoulder, elbow and wrist of the left arm and the right; None without any
     """
 
@@ -45,6 +47,8 @@ class Subject:
     via: NDArray[np.float64] | None = None
     via_face: NDArray[np.float64] | None = None
     arms: NDArray[np.float64] | None = None
+    company: tuple[Subject, ...] = ()
+    plan: tuple[float, float, float, float] | None = None
 
     @property
     def frames(self) -> int:
@@ -67,10 +71,19 @@ class Subject:
         shift = np.array((0.0, 0.0, up))
         moved = {name: path + shift for name, path in self.landmarks.items()}
         members = tuple(one.shifted(up) for one in self.members)
+        company = tuple(one.shifted(up) for one in self.company)
         via = None if self.via is None else self.via + shift
         arms = None if self.arms is None else self.arms + shift
         position = self.position + shift
-        return replace(self, position=position, landmarks=moved, members=members, via=via, arms=arms)
+        return replace(
+            self,
+            position=position,
+            landmarks=moved,
+            members=members,
+            via=via,
+            arms=arms,
+            company=company,
+        )
 
     def travel(self) -> float:
         """Metres from where it starts to the farthest it gets from there on the floor."""
@@ -172,7 +185,8 @@ def place(name: str, low: tuple[float, ...], high: tuple[float, ...], frames: in
     span = float(np.hypot(high[0] - low[0], high[1] - low[1]))
     tall = float(np.clip(0.36 * span, 1.8, 5.0))
     centre = np.tile(((low[0] + high[0]) / 2, (low[1] + high[1]) / 2, low[2] + 0.9), (frames, 1))
-    return _box(name, "place", centre, np.full(frames, tall), np.zeros(frames), low[2])
+    area = _box(name, "place", centre, np.full(frames, tall), np.zeros(frames), low[2])
+    return replace(area, plan=(low[0], low[1], high[0], high[1]))
 
 
 def _box(

@@ -48,6 +48,7 @@ NOTES = {
     "walk_missed": Note("share", "little of the walk is missed", 0.0, 0.3),
     "hands_missed": Note("share", "little of what hands do is missed", 0.0, 0.5),
     "face_covered": Note("share", "no arm of theirs is before the face", 0.0, 0.1),
+    "company_cut": Note("share", "nobody else is seen without their head", 0.0, 0.3),
     "foreground": Note("share", "nothing near is in the way", 0.0, 0.1),
     "face": Note("cosine", "the face is turned to the camera", 0.0, 1.0),
     "clearance": Note("m", "the camera has room around it", 0.5, _ANY),
@@ -78,6 +79,7 @@ _COMPARED = {
     "empty": ("less empty", "emptier", "empty"),
     "walk_missed": ("less of the walk is missed", "more of the walk is missed", "walk_missed"),
     "hands_missed": ("less is missed of what hands do", "more is missed of what hands do", "hands_missed"),
+    "company_cut": ("others less cut off", "others more cut off", "company_cut"),
     "head_cropped": (
         "head and body less cut at the ends",
         "head or body cut more at the start or the end",
@@ -181,6 +183,7 @@ def faults(measures: Measures, movement: str) -> tuple[str, ...]:
             m["face_covered"] > 0.4,
             f"has an arm before {number('face_covered', m['face_covered'])} of the face",
         ),
+        (m["company_cut"] > 0.6, "shows somebody else without their head"),
         (m["foreground"] > 0.2, f"has something near over {covered} of the picture"),
         (m["backdrop_gap"] > 0.05, "misses a wall behind the subject"),
         (m["interest"] < 0.5, "does not show all the line is about"),

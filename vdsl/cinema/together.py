@@ -49,7 +49,7 @@ def everybody_seen(
     points = np.stack([head[at] for head in subject.heads.values()], axis=1)
     xy, depth = project(points[None], camera, axes, takes.track.focal[:, at], takes.track.sensor)
     half = np.array(takes.track.sensor) / takes.track.focal[:, at][..., None]
-    seen = within(xy, depth, 0.03) & seen_from(points) & ~_behind_heads(xy * half[:, :, None], depth)
+    seen = within(xy, depth, 0.03) & seen_from(points) & ~behind_heads(xy * half[:, :, None], depth)
     return _held(np.asarray(seen.all(axis=-1)), takes.window)
 
 
@@ -75,7 +75,7 @@ def _over_a_shoulder(
     return _held(np.asarray(there), takes.window) * (1.0 - _TO_US * shows)
 
 
-def _behind_heads(xy: Array, depth: Array) -> Bools:
+def behind_heads(xy: Array, depth: Array) -> Bools:
     """Which heads are behind another one, or behind its shoulders: [P, F, K]. xy: [P, F, K, 2], metres aside
     and down at a metre's distance; depth: [P, F, K]."""
     wide = _HEAD / np.maximum(depth, 0.1)

@@ -42,7 +42,11 @@ def qualities(measures: Measures) -> dict[str, Array]:
         * m["head_visible"]
         * (1.0 - 0.6 * m["face_covered"])
         * (0.25 + 0.5 * turned + 0.25 * m["interest"]),
-        "framing": m["in_frame"] * _near(m["size_drift"], 0.9) * (1.0 - m["foreground"]) * (1.0 - m["empty"]),
+        "framing": m["in_frame"]
+        * _near(m["size_drift"], 0.9)
+        * (1.0 - m["foreground"])
+        * (1.0 - m["empty"])
+        * (1.0 - 0.4 * m["company_cut"]),
         "headroom": _near(m["headroom_error"], 0.12),
         "lead_room": np.clip(0.75 + 1.5 * m["lead_room"], 0.0, 1.0),
         "thirds": _near(m["thirds_error"], 0.16),

@@ -17,6 +17,8 @@ from .designer import qualities
 
 #: Measures that are heavy-tailed: their square root is taught.
 _LONG = ("jerk", "speed", "angular_speed")
+#: Measures that are not taught: what is told of them would be hardly more than what is told of the criterion.
+_UNTAUGHT = ("company_cut",)
 #: The least that the designer's criteria are taken for: their logarithms are taught, which add up to appeal.
 _WORST = 0.05
 #: Points of a subject whose place in the frame is taught; half frames from its middle, no further than this.
@@ -31,7 +33,7 @@ def hints_of(camera: CameraProposal) -> dict[str, float]:
     aimed at, in the camera's first axes.
     """
     track = camera.track
-    found = {k: float(v) for k, v in camera.measures.items()}
+    found = {k: float(v) for k, v in camera.measures.items() if k not in _UNTAUGHT}
     found |= {f"fault_{k}": float(v) for k, v in flaws_by_measure(camera.measures).items()}
     good = qualities(camera.measures).items()
     found |= {f"good_{k}": float(np.log(np.maximum(v, _WORST))) for k, v in good}

@@ -54,6 +54,24 @@ class Filming:
 
 def subject_of(shot: Shot, story: StoryProposal, filming: Filming) -> Subject:
     """Whom or what the shot's cameras are about."""
+    subject = _subject(shot, story, filming)
+    known = {subject.name, *subject.heads, *(shot.whose if shot.view in ("ots", "pov") else ())}
+    others = [_person(name, story, filming) for name in story.performances if name not in known]
+    if subject.kind == "place":
+        others = [one for one in others if _within(subject, one)]
+    return replace(subject, company=tuple(others))
+
+
+def _within(area: Subject, one: Subject) -> bool:
+    """Whether somebody is ever in a place."""
+    if area.plan is None:
+        return True
+    x, y = one.position[:, 0], one.position[:, 1]
+    left, low, right, top = area.plan
+    return bool(((x > left) & (x < right) & (y > low) & (y < top)).any())
+
+
+def _subject(shot: Shot, story: StoryProposal, filming: Filming) -> Subject:
     if shot.view in ("two-shot", "group"):
         everybody = _together(shot, story, filming)
         return everybody if everybody is not None else _focused(shot, story, filming)

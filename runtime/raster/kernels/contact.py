@@ -127,7 +127,9 @@ def touch(
                                 amount = (area[v] if ti.static(layer == 0) else solid[v]) * share * share
                                 x, y, at = cell % columns, cell // columns, own + layer * cells + cell
                                 # written out: one thread has the moment, and += would be an atomic addition
-                                spare[at] = spare[at] + ti.cast(ti.min(amount * density, MOST) * UNIT + 0.5, ti.i32)
+                                spare[at] = spare[at] + ti.cast(
+                                    ti.min(amount * density, MOST) * UNIT + 0.5, ti.i32
+                                )
                                 box[layer, 0] = ti.min(box[layer, 0], x)
                                 box[layer, 1] = ti.max(box[layer, 1], x)
                                 box[layer, 2] = ti.min(box[layer, 2], y)

@@ -117,9 +117,7 @@ def skin(
 
 
 @ti.kernel
-def repeat(
-    vertices: i1, begin: i1, which: i1, origin: ti.i32, moments: ti.i32, position: f3, normal: f3
-):
+def repeat(vertices: i1, begin: i1, which: i1, origin: ti.i32, moments: ti.i32, position: f3, normal: f3):
     """What rests, in moments 1 to ``moments`` - 1 as it is in moment ``origin``; lists as above."""
     for i in range((moments - 1) * PIECES):
         m = 1 + i // PIECES

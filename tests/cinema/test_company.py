@@ -1,0 +1,99 @@
+"""Who else is in the picture: nobody loses their head beside the subject, and a room shows who is in it."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from filmset import shot, skeleton, standing, story, world
+from numpy.typing import NDArray
+
+from vdsl.cinema.measures import measure
+from vdsl.cinema.sizes import size_of
+from vdsl.cinema.subject import place
+from vdsl.cinema.takes import Takes
+from vdsl.cinema.track import CameraTrack, look_at_rotation
+from vdsl.propose.cameras import Filming, propose_cameras
+from vdsl.propose.subjects import subject_of
+from vdsl.propose.types import STILL, StoryProposal
+
+BODY, FRAMES = skeleton(1.7), 24
+FILMING = Filming(world(), {"anna": BODY, "ben": BODY}, 24.0, 3)
+
+
+def two(ben: tuple[float, float], facing: float = 0.0) -> StoryProposal:
+    """Anna at the origin looks along x; Ben stands somewhere."""
+    places = {"anna": ((0.0, 0.0), 0.0), "ben": (ben, facing)}
+    acted = {}
+    for name, (at, way) in places.items():
+        acted[name] = standing(BODY, np.tile((*at, 0.0), (FRAMES, 1)), np.full(FRAMES, way))
+    return story(acted)
+
+
+def takes_of(
+    scale: str, kind: str, eye: tuple[float, float, float], aim: tuple[float, float, float]
+) -> Takes:
+    at, to = (np.tile(p, (1, FRAMES, 1)).astype(float) for p in (eye, aim))
+    track = CameraTrack(at, look_at_rotation(at, to, 0.0), np.full((1, FRAMES), 35.0), to, (36.0, 20.25))
+    window, key = np.ones((1, 10), bool), np.zeros(1, np.int64)
+    return Takes(track, (size_of(kind, scale),), window, key, 0.0, False, ())
+
+
+def measured(told: StoryProposal, eye: tuple[float, float, float], aim: tuple[float, float, float]) -> float:
+    """How long somebody else has no head in a medium close-up of Anna."""
+    subject = subject_of(shot(scale="medium-close-up"), told, FILMING)
+    assert [one.name for one in subject.company] == ["ben"]
+    takes = takes_of("medium-close-up", "person", eye, aim)
+    return float(measure(takes, subject, FILMING.world, 24.0).values["company_cut"][0])
+
+
+def test_somebody_whose_body_is_in_the_picture_is_to_have_a_head_in_it() -> None:
+    low = ((1.8, 0.0, 1.0), (0.0, 0.0, 0.7))  # camera and aim: to the waist, and no head of anybody
+    assert measured(two((0.0, 0.6)), *low) == 1.0
+    assert measured(two((0.0, 3.0)), *low) == 0.0, "beside the picture"
+    assert measured(two((0.0, 0.6)), (3.5, 0.0, 1.4), (0.0, 0.0, 1.3)) == 0.0, "whole"
+    assert 0.2 < measured(two((-1.0, 0.3)), *low) < 0.9, "who is farther off counts less"
+    assert measured(two((-5.0, 0.3)), *low) == 0.0
+
+
+def test_those_a_view_is_of_are_no_company() -> None:
+    told, said = two((0.0, 0.6)), shot(scale="medium")
+    both = subject_of(replace(said, view="two-shot", whose=("anna", "ben")), told, FILMING)
+    over = subject_of(replace(said, view="ots", whose=("ben",)), told, FILMING)
+    assert both.company == over.company == ()
+
+
+def in_a_place(told: StoryProposal, eye: tuple[float, float, float]) -> dict[str, float]:
+    area = place("hall", (-4.0, -4.0, 0.0), (4.0, 4.0, 3.0), FRAMES)
+    people = subject_of(replace(shot(), focus=None), replace(told, variant=STILL), FILMING).company
+    assert [one.name for one in people] == ["anna", "ben"]
+    takes = takes_of("wide", "place", eye, (0.0, 0.0, 1.2))
+    found = measure(takes, replace(area, company=people), FILMING.world, 24.0).values
+    return {k: float(v[0]) for k, v in found.items()}
+
+
+def test_a_picture_of_a_place_shows_who_is_in_it() -> None:
+    told = two((0.0, 1.2))
+    ahead, behind, aside = (
+        in_a_place(told, eye) for eye in ((5.0, 0.6, 1.5), (-5.0, 0.6, 1.5), (0.0, -5.0, 1.5))
+    )
+    assert ahead["interest"] == 1.0
+    assert ahead["face"] > 0.2
+    assert behind["interest"] == 1.0
+    assert behind["face"] < -0.8
+    assert aside["interest"] == 0.5, "one hides the other"
+    near = in_a_place(told, (1.0, 0.6, 1.0))
+    assert near["interest"] < 1.0
+    assert near["company_cut"] > 0.5
+
+
+def test_of_a_room_with_people_faces_are_proposed_first() -> None:
+    """Both look along x: the takes with the best geometry see them from before or aside, not from behind."""
+    said = replace(shot("static", "full"), focus=None, proposals=60)
+    told = replace(two((0.5, 1.0)), variant=STILL)
+    cameras = propose_cameras(said, [told], FILMING).cameras
+    assert len(cameras) > 10
+    ranked: NDArray[np.int64] = np.argsort([-c.measures["geometry"] for c in cameras])
+    faces = np.array([cameras[int(i)].measures["face"] for i in ranked])
+    assert faces[:5].min() > -0.3
+    assert faces.min() < -0.6, "there are others to choose from"

@@ -1,0 +1,33 @@
+"""Kernels to call in tests: Taichi needs real annotations, and so a file without postponed ones."""
+
+# mypy: ignore-errors
+
+import taichi as ti
+
+f1, i1 = ti.types.ndarray(ti.f32, ndim=1), ti.types.ndarray(ti.i32, ndim=1)
+
+
+@ti.kernel
+def scaled(a: f1, by: ti.f32, plus: ti.i32, twice: ti.template(), out: f1):
+    for i in range(a.shape[0]):
+        out[i] = a[i] * by + plus
+        if ti.static(twice):
+            out[i] *= 2
+
+
+@ti.kernel
+def total(a: i1) -> ti.i32:
+    found = 0
+    for i in range(a.shape[0]):
+        found += a[i]
+    return found
+
+
+@ti.data_oriented
+class Counter:
+    def __init__(self, step):
+        self.step = step
+
+    @ti.kernel
+    def stepped(self, x: ti.i32) -> ti.i32:
+        return x + self.step

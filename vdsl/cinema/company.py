@@ -1,0 +1,86 @@
+"""Who else is in the picture: people cut off beside the subject, and those in a place that is shown.
+
+A place has no face, but whoever stands in it has one, and a picture of a room in which people turn their
+backs, hide each other or lose their heads is a poor one. Assumes a subject that knows its company.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .composition import broken
+from .framing import Array
+from .subject import Subject
+from .takes import Bools, Picture, Takes, mean_of, within
+from .together import behind_heads
+from .track import project
+from .vectors import dot, length
+
+#: One who is nearer than the subject counts in full, one so many times as far away hardly any more.
+_FAR = 3.0
+#: A face turned more than this to the camera does not make up for a back (cosine).
+_ENOUGH = 0.3
+#: Metres before the camera from which on somebody is in its picture.
+_BEFORE = 0.2
+
+
+def company_cut(
+    takes: Takes,
+    subject: Subject,
+    at: NDArray[np.int64],
+    camera: Array,
+    axes: Array,
+    picture: Picture,
+    seen_from: Callable[[Array], Bools],
+) -> Array:
+    """Share [P] of the time in which somebody beside the subject is in the picture without their head.
+
+    seen_from: which of points [F, K, 3] no wall or thing hides, bool [P, F, K]
+    """
+    out = np.zeros(camera.shape[:2])
+    own = np.maximum(picture.depth[:, :, picture.names.index("pocket")], _BEFORE)
+    for one in subject.company:
+        marks = ("eyes", "chin", "pocket", "waist")
+        points = np.stack([one.landmarks[name][at] for name in marks], axis=1)
+        xy, depth = project(points[None], camera, axes, takes.track.focal[:, at], takes.track.sensor)
+        inside = within(xy, depth, 0.0)
+        cut = inside[:, :, 2:].any(axis=2) & ~inside[:, :, :2].all(axis=2) & (depth[:, :, 2] > _BEFORE)
+        if cut.any():
+            cut &= seen_from(points[:, 2:]).any(axis=2)
+            near = (_FAR - depth[:, :, 2] / own) / (_FAR - 1.0)
+            out = np.maximum(out, cut * np.clip(near, 0.0, 1.0))
+    return np.asarray(out.mean(axis=1))
+
+
+def company_shown(
+    takes: Takes,
+    subject: Subject,
+    at: NDArray[np.int64],
+    camera: Array,
+    axes: Array,
+    seen_from: Callable[[Array], Bools],
+) -> dict[str, Array]:
+    """Of a place with people in it: ``interest``, how many of their heads are seen, ``face``, how they are
+    turned to the camera, ``head_cropped`` and ``head_cut``, of the worst off. seen_from: as above"""
+    people, focal = subject.company, takes.track.focal[:, at]
+    eyes = np.stack([one.landmarks["eyes"][at] for one in people], axis=1)
+    xy, depth = project(eyes[None], camera, axes, focal, takes.track.sensor)
+    half = np.array(takes.track.sensor) / focal[..., None]
+    seen = within(xy, depth, 0.02) & seen_from(eyes) & ~behind_heads(xy * half[:, :, None], depth)
+    faces, cropped, cut = (np.zeros(len(camera)) for _ in range(3))
+    for one in people:
+        to_camera = camera - one.landmarks["eyes"][at]
+        cosine = dot(to_camera, one.face[None, at]) / np.maximum(length(to_camera), 1e-9)
+        faces += mean_of(np.minimum(cosine, _ENOUGH), takes.window) / len(people)
+        names = list(one.landmarks)
+        points = np.stack([one.landmarks[name][at] for name in names], axis=1)
+        found = Picture(names, *project(points[None], camera, axes, focal, takes.track.sensor))
+        cropped = np.maximum(cropped, broken(takes, one, found))
+        there = within(found.of("pocket"), found.depth[:, :, names.index("pocket")], 0.0)
+        over = np.where(there & takes.window, -found.of("crown")[..., 1], 0.0).max(axis=1)
+        cut = np.maximum(cut, np.clip(over, 0.0, 2.0))
+    shown = mean_of(seen.mean(axis=-1), takes.window)
+    return {"interest": shown, "face": faces, "head_cropped": cropped, "head_cut": cut}

@@ -228,5 +228,5 @@ def _set_shadow(
     seen = backend.buffer(vertices.shape, np.float32)
     crew = backend.crew(1)
     light.fit(vertices, arrays["basis"], SET_TEXEL, size, len(used), 1, seen, frame, *crew)
-    light.cast(seen, faces, casters, 0, frame, size, 1, depth, spare, coarse, *backend.crew(1))
+    light.cast(seen, faces, casters, 0, 0, frame, size, 1, depth, spare, coarse, *backend.crew(1))
     return ShadowMap(size, frame, depth, coarse)

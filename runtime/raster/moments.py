@@ -200,4 +200,5 @@ class Moments:
         crew = self._backend.crew
         self._light.fit(self.position, a["basis"], *fitted, *crew(moments))
         kept = (self.frame, size, moments, self.depth, blur, self.coarse)
-        self._light.cast(seen, a["faces"], a["casters"], loaded.static_vertices, *kept, *crew(moments))
+        casters = (a["faces"], a["casters"], scene.closed_casters, loaded.static_vertices)
+        self._light.cast(seen, *casters, *kept, *crew(moments))

@@ -50,11 +50,12 @@ class Prepared:
     surface_object: int32 [S]: object id of each surface, a surface being one part of one object
     one_color: int32 [S], 1 where all faces of a surface have one colour
     moving_surface: index of the first skinned surface; static_faces: number of static triangles
-    set_casters, casters: int32, triangles that throw shadows, static and skinned; area: float32 [K], square
-    metres a skinned vertex stands for; solid: float32 [K], the same without what is flat; owner: int32 [K],
-    the object it is of; density: surface of the set in the air; stage: corners of what stands in it; levels:
-    heights of its floors; detail: the levels of bodies; head: uint8 [F], 1 for a triangle of a head, 2 for one
-    of its front
+    set_casters, casters: int32, triangles that throw shadows, static and skinned, of which the first
+    closed_casters are of closed shells
+    area: float32 [K], square metres a skinned vertex stands for; solid: float32 [K], the same without what is
+    flat; owner: int32 [K], the object it is of; density: surface of the set in the air; stage: corners of
+    what stands in it; levels: heights of its floors; detail: the levels of bodies; head: uint8 [F], 1 for a
+    triangle of a head, 2 for one of its front
     """
 
     vertices: NDArray[np.float32]
@@ -76,6 +77,7 @@ class Prepared:
     static_faces: int
     set_casters: NDArray[np.int32]
     casters: NDArray[np.int32]
+    closed_casters: int
     area: NDArray[np.float32]
     solid: NDArray[np.float32]
     owner: NDArray[np.int32]
@@ -253,6 +255,7 @@ def prepare(scene: RenderScene, style: Style, on_host: bool = False) -> Prepared
     calm = (fitting > LOOSE) & ~clear_part
     color = np.concatenate([quiet, np.where(calm[:, None], quieted(bright, style.quiet), bright)])
     color = surface_colors(color, moves == 1, style)
+    casters, closed_casters = _casters(skinned, fitting, casting[moving_order], moving_cull[moving_order])
     set_casters = key_casters(static, static_wall[order], scene.static_object[order])
     return Prepared(
         vertices=static.vertices,
@@ -273,7 +276,8 @@ def prepare(scene: RenderScene, style: Style, on_host: bool = False) -> Prepared
         moving_surface=int((surfaces[:, 0] == 0).sum()),
         static_faces=len(order),
         set_casters=set_casters,
-        casters=(_casters(skinned, fitting, casting[moving_order]) + len(order)).astype(np.int32),
+        casters=(casters + len(order)).astype(np.int32),
+        closed_casters=closed_casters,
         area=touching,
         solid=solid,
         owner=owner,
@@ -299,12 +303,15 @@ def _fitting(scene: RenderScene) -> NDArray[np.int32]:
     return np.full(len(scene.skinned.faces), LOOSE, np.int32) if scene.fitting is None else scene.fitting
 
 
-def _casters(skinned: Mesh, fitting: NDArray[np.int32], casting: NDArray[np.bool_]) -> NDArray[np.int32]:
+def _casters(
+    skinned: Mesh, fitting: NDArray[np.int32], casting: NDArray[np.bool_], closed: NDArray[np.bool_]
+) -> tuple[NDArray[np.integer], int]:
     """Skinned faces that throw shadows: none of doors and windows, whose walls throw none, and of each body
-    one level, the same in all views."""
+    one level, the same in all views. First those of closed shells; and how many these are."""
     nobody = np.full(len(skinned.faces), -1, np.int32)
     found = key_casters(skinned, nobody, nobody)
-    return found[(fitting[found] < 0) & casting[found]]
+    found = found[(fitting[found] < 0) & casting[found]]
+    return found[np.argsort(~closed[found], kind="stable")], int(closed[found].sum())
 
 
 def _touching_area(scene: RenderScene) -> NDArray[np.float32]:

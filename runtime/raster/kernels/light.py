@@ -80,6 +80,7 @@ def cast(
     seen: f3,
     faces: i2,
     casters: i1,
+    closed: ti.i32,
     offset: ti.i32,
     frame: f2,
     size: ti.i32,
@@ -91,7 +92,11 @@ def cast(
     slots: ti.i32,
     host: ti.template(),
 ):
-    """Draw the casters into each moment's map, and the coarse map of it."""
+    """Draw the casters into each moment's map, and the coarse map of it.
+
+    closed: how many of them, the first ones, are of closed shells: what of these faces away from the light
+    has something above it that faces it
+    """
     for slot in range(slots):
         m = crew.task(slot, moments, queue, host)
         if m < moments:
@@ -103,7 +108,9 @@ def cast(
                 a = on_map(seen, m, faces[t, 0] - offset, frame)
                 b = on_map(seen, m, faces[t, 1] - offset, frame)
                 c = on_map(seen, m, faces[t, 2] - offset, frame)
-                stamp(depth, base, size, a, b, c)
+                towards = (b.x - a.x) * (c.y - a.y) - (c.x - a.x) * (b.y - a.y)
+                if towards > 0 or i >= closed:
+                    stamp(depth, base, size, a, b, c)
             summarise(depth, base, size, spare, coarse, m)
 
 

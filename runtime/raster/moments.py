@@ -189,7 +189,9 @@ class Moments:
         self.ground = self._buffer("ground", ((moments + 1) * 2 * cells,), np.float32)
         if self._backend.on_host:
             self.frame[0 if self.size == 1 else moments :] = OUT_OF_REACH
-            self.ground[moments * 2 * cells :] = 0.0
+            self.ground[moments * 2 * cells if clusters and palettes and lit else 0 :] = 0.0
+        elif not clusters:  # another scene may have left something
+            self.ground.fill(0.0)
 
     def _cast(self, loaded: Loaded, moments: int, skinned: int) -> None:
         """The shadow map of each moment."""

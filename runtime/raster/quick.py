@@ -3,7 +3,7 @@
 Taichi reads the source of every kernel anew in each process, even where the compiled kernel is kept, and
 spends most of that time on laying out source lines for error messages that nobody will see. And with every
 call it asks anew what kinds of arguments there are, which takes longer than many a kernel: here that is
-remembered. Assumes Taichi 1.7; where its insides are named otherwise, everything stays as it is. Guarantees
+remembered. Assumes Taichi 1.7; where what is replaced is not there, everything stays as it is. Guarantees
 the same kernels: only the pictures of source lines in compile errors are plainer.
 """
 

@@ -218,7 +218,7 @@ class Renderer:
         moment, hidden: of the views that look at them
         """
         moments = self._moments
-        by_moment = np.ones((len(palettes), hidden.shape[1]), np.int32)
+        by_moment = np.ones((max(len(palettes), 1), hidden.shape[1]), np.int32)
         np.minimum.at(by_moment, moment, hidden)
         moments.move(content, palettes, height, by_moment, pictures and self._plain is None)
         some = moments.count if len(content.scene.clusters) > content.scene.moving_first else 0

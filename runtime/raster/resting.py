@@ -41,7 +41,7 @@ class Rig:
     def __init__(self, scene: Prepared) -> None:
         joints, weights = scene.detail.scene.joints, scene.detail.scene.weights
         first = np.take_along_axis(joints, weights.argmax(axis=1)[:, None], axis=1) if len(joints) else joints
-        used = np.sort(np.where(weights > 0, joints, first), axis=1)
+        used = np.sort(np.where(weights != 0, joints, first), axis=1)
         # few combinations of matrices move many vertices
         self._kinds, kind = np.unique(used, axis=0, return_inverse=True)
         self._kind = kind.reshape(-1)

@@ -63,6 +63,15 @@ def test_those_a_view_is_of_are_no_company() -> None:
     assert both.company == over.company == ()
 
 
+def test_a_room_holds_who_stands_in_it_and_not_who_is_upstairs() -> None:
+    room = place("hall", (-1.0, -1.0, 0.0), (1.0, 1.0, 2.6), FRAMES)
+    told = two((0.0, 3.0))
+    anna, ben = subject_of(replace(shot(), focus=None), replace(told, variant=STILL), FILMING).company
+    assert room.holds(anna).all()
+    assert not room.holds(ben).any()
+    assert not room.holds(anna.shifted(3.0)).any()
+
+
 def in_a_place(told: StoryProposal, eye: tuple[float, float, float]) -> dict[str, float]:
     area = place("hall", (-4.0, -4.0, 0.0), (4.0, 4.0, 3.0), FRAMES)
     people = subject_of(replace(shot(), focus=None), replace(told, variant=STILL), FILMING).company

@@ -92,3 +92,40 @@ def test_contact_shadows_add_up_whatever_rests() -> None:
     seen = drawer.render(palettes, views, (160, 96)).color.astype(float).mean(axis=-1)
     between = seen[:, 40:52, 76:84].mean(axis=(1, 2))
     assert between[0] > between[1] > between[2]
+
+
+def floor_of(metres: float, things: bool = True) -> RenderScene:
+    floor = box((-metres, -metres, -0.1), (metres, metres, 0), (0.7, 0.7, 0.7))
+    mug = box((-0.2, -0.2, 0), (0.2, 0.2, 0.5), (0.7, 0.1, 0.1))
+    return scene([floor], [mug, mug] if things else [])
+
+
+def test_nothing_is_left_of_another_scene() -> None:
+    """Scratch and shadows of a large floor, where smaller and emptier ones are drawn by the same drawer."""
+    moments = 200
+    palettes = still(2, moments)
+    palettes[:, 0, 0, 3], palettes[:, 1, 1, 3] = np.linspace(-1, 1, moments), np.linspace(1, -1, moments)
+    views = looking([(0.0, -2.5, 2.2)] * moments, [(0.0, 0.0, 0.0)] * moments, moments=list(range(moments)))
+    used = Renderer("cpu", STYLES["board"])
+    for metres in (8.0, 3.0, 1.5):
+        fresh = Renderer("cpu", STYLES["board"])
+        drawn = []
+        for drawer in (used, fresh):
+            drawer.load(floor_of(metres))
+            drawn.append(drawer.render(palettes, views, (48, 32)).color)
+        np.testing.assert_array_equal(*drawn)
+    one, drawn = looking([(0.0, -2.5, 2.2)], [(0.0, 0.0, 0.0)]), []
+    for drawer in (used, Renderer("cpu", STYLES["board"])):
+        drawer.load(floor_of(1.5, things=False))
+        drawn.append(drawer.render(still(1), one, (160, 96)).color)
+    np.testing.assert_array_equal(*drawn)
+
+
+def test_a_set_is_drawn_without_any_moment() -> None:
+    drawer = Renderer("cpu", STYLES["board"])
+    drawer.load(floor_of(2.0, things=False))
+    one = looking([(0.0, -2.5, 2.2)], [(0.0, 0.0, 0.0)])
+    some = drawer.render(still(1), one, (48, 32)).color
+    np.testing.assert_array_equal(
+        drawer.render(np.zeros((0, 0, 3, 4), np.float32), one, (48, 32)).color, some
+    )

@@ -66,21 +66,25 @@ def company_shown(
     """Of a place with people in it: ``interest``, how many of their heads are seen, ``face``, how they are
     turned to the camera, ``head_cropped`` and ``head_cut``, of the worst off. seen_from: as above"""
     people, focal = subject.company, takes.track.focal[:, at]
+    here = np.stack([subject.holds(one)[at] for one in people], axis=1)  # [F, people]
     eyes = np.stack([one.landmarks["eyes"][at] for one in people], axis=1)
     xy, depth = project(eyes[None], camera, axes, focal, takes.track.sensor)
     half = np.array(takes.track.sensor) / focal[..., None]
     seen = within(xy, depth, 0.02) & seen_from(eyes) & ~behind_heads(xy * half[:, :, None], depth)
+    counts = here.sum(axis=1)
+    share = np.where(counts > 0, (seen & here).sum(axis=2) / np.maximum(counts, 1), 1.0)
     faces, cropped, cut = (np.zeros(len(camera)) for _ in range(3))
-    for one in people:
+    for k, one in enumerate(people):
         to_camera = camera - one.landmarks["eyes"][at]
         cosine = dot(to_camera, one.face[None, at]) / np.maximum(length(to_camera), 1e-9)
-        faces += mean_of(np.minimum(cosine, _ENOUGH), takes.window) / len(people)
+        faces += mean_of(np.minimum(cosine, _ENOUGH), takes.window & here[:, k]) / len(people)
         names = list(one.landmarks)
         points = np.stack([one.landmarks[name][at] for name in names], axis=1)
         found = Picture(names, *project(points[None], camera, axes, focal, takes.track.sensor))
         cropped = np.maximum(cropped, broken(takes, one, found))
         there = within(found.of("pocket"), found.depth[:, :, names.index("pocket")], 0.0)
-        over = np.where(there & takes.window, -found.of("crown")[..., 1], 0.0).max(axis=1)
+        there = there & takes.window & here[:, k]
+        over = np.where(there, -found.of("crown")[..., 1], 0.0).max(axis=1)
         cut = np.maximum(cut, np.clip(over, 0.0, 2.0))
-    shown = mean_of(seen.mean(axis=-1), takes.window)
+    shown = mean_of(share, takes.window)
     return {"interest": shown, "face": faces, "head_cropped": cropped, "head_cut": cut}

@@ -19,6 +19,10 @@ from runtime.body.skeleton import JOINT, Skeleton
 SIGHT = ("eyes", "chin", "pocket", "waist", "hand_l", "hand_r", "knees")
 
 
+#: Metres over the floor somebody stands on by which one tells in which storey they are.
+_OVER_FLOOR = 0.5
+
+
 @dataclass(frozen=True, eq=False)
 class Subject:
     """A subject over T frames.
@@ -31,8 +35,8 @@ class Subject:
     members: everybody a shot of several has to show, who acts first of all; () for a single one
     via: float64 [T, 3], the head over whose shoulder the camera looks, or the eyes it looks through
     via_face: float64 [T, 3], unit direction its face points
-    company: everybody else who is about, of a place those in it
-    plan: of a place, its bounds on the floor plan, left, low, right, top
+    company: of people everybody else who is about, of a place those who are ever in it
+    bounds: of a place, its lower and its upper corner
     arms: float64 [T, 2, 3, 3], shoulder, elbow and wrist of the left arm and the right; None without any
     """
 
@@ -48,7 +52,7 @@ class Subject:
     via_face: NDArray[np.float64] | None = None
     arms: NDArray[np.float64] | None = None
     company: tuple[Subject, ...] = ()
-    plan: tuple[float, float, float, float] | None = None
+    bounds: tuple[tuple[float, ...], tuple[float, ...]] | None = None
 
     @property
     def frames(self) -> int:
@@ -84,6 +88,12 @@ class Subject:
             arms=arms,
             company=company,
         )
+
+    def holds(self, one: Subject) -> NDArray[np.bool_]:
+        """Of a place, in which frames somebody stands in it, bool [T]."""
+        low, high = (np.array(corner) for corner in self.bounds or ((-np.inf,) * 3, (np.inf,) * 3))
+        at = one.position + np.array((0.0, 0.0, _OVER_FLOOR))
+        return np.asarray(((at > low) & (at < high)).all(axis=1))
 
     def travel(self) -> float:
         """Metres from where it starts to the farthest it gets from there on the floor."""
@@ -186,7 +196,7 @@ def place(name: str, low: tuple[float, ...], high: tuple[float, ...], frames: in
     tall = float(np.clip(0.36 * span, 1.8, 5.0))
     centre = np.tile(((low[0] + high[0]) / 2, (low[1] + high[1]) / 2, low[2] + 0.9), (frames, 1))
     area = _box(name, "place", centre, np.full(frames, tall), np.zeros(frames), low[2])
-    return replace(area, plan=(low[0], low[1], high[0], high[1]))
+    return replace(area, bounds=(low, high))
 
 
 def _box(

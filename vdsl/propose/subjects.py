@@ -55,20 +55,14 @@ class Filming:
 def subject_of(shot: Shot, story: StoryProposal, filming: Filming) -> Subject:
     """Whom or what the shot's cameras are about."""
     subject = _subject(shot, story, filming)
-    known = {subject.name, *subject.heads, *(shot.whose if shot.view in ("ots", "pov") else ())}
+    if subject.kind == "thing":
+        return subject  # whose hands are beside it does not matter
+    known = {*subject.heads, *(shot.whose if shot.view in ("ots", "pov") else ())}
+    known |= {subject.name} if subject.kind == "person" else set()
     others = [_person(name, story, filming) for name in story.performances if name not in known]
     if subject.kind == "place":
-        others = [one for one in others if _within(subject, one)]
+        others = [one for one in others if subject.holds(one).any()]
     return replace(subject, company=tuple(others))
-
-
-def _within(area: Subject, one: Subject) -> bool:
-    """Whether somebody is ever in a place."""
-    if area.plan is None:
-        return True
-    x, y = one.position[:, 0], one.position[:, 1]
-    left, low, right, top = area.plan
-    return bool(((x > left) & (x < right) & (y > low) & (y < top)).any())
 
 
 def _subject(shot: Shot, story: StoryProposal, filming: Filming) -> Subject:
@@ -154,7 +148,8 @@ def _room_subject(filming: Filming, frames: int) -> Subject:
         return place(item.path[-1], item.low, item.high, frames)
     floors = np.array(filming.world.floors or ((-2.0, -2.0, 2.0, 2.0),))
     low, high = floors[:, :2].min(axis=0), floors[:, 2:].max(axis=0)
-    return place(filming.world.name, (*low.tolist(), 0.0), (*high.tolist(), 2.6), frames)
+    whole = place(filming.world.name, (*low.tolist(), 0.0), (*high.tolist(), 2.6), frames)
+    return replace(whole, bounds=None)  # everybody is in it, on whatever floor
 
 
 def _spot_subject(spot: Spot, frames: int) -> Subject:

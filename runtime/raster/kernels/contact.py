@@ -159,6 +159,7 @@ def touch(
                                 at = layer * cells + y * columns + x
                                 counted[begin + at] = counted[begin + at] + spare[own + at]
                                 spare[own + at] = 0
+                                spare[blurred + y * columns + x] = 0
             for i in range(cells):
                 ground[begin + i] = ti.cast(counted[begin + i], ti.f32) * ti.static(scale(0))
             for i in range(cells, 2 * cells):

@@ -103,11 +103,11 @@ def floor_of(metres: float, things: bool = True) -> RenderScene:
 def test_nothing_is_left_of_another_scene() -> None:
     """Scratch and shadows of a large floor, where smaller and emptier ones are drawn by the same drawer."""
     moments = 200
-    palettes = still(2, moments)
-    palettes[:, 0, 0, 3], palettes[:, 1, 1, 3] = np.linspace(-1, 1, moments), np.linspace(1, -1, moments)
+    rng, used = np.random.default_rng(0), Renderer("cpu", STYLES["board"])
     views = looking([(0.0, -2.5, 2.2)] * moments, [(0.0, 0.0, 0.0)] * moments, moments=list(range(moments)))
-    used = Renderer("cpu", STYLES["board"])
-    for metres in (8.0, 3.0, 1.5):
+    for metres in (8.0, 6.5, 5.0, 1.5):
+        palettes = still(2, moments)
+        palettes[:, :, :2, 3] = rng.uniform(-metres, metres, (moments, 2, 2))
         fresh = Renderer("cpu", STYLES["board"])
         drawn = []
         for drawer in (used, fresh):

@@ -14,7 +14,7 @@ from .errors import RankerError
 BACKBONES = ("resnet50", "resnet18")
 #: Of :attr:`ModelConfig.liking`, where it is taught how well good shots are liked. The best of many are found
 #: by more, and more that have a fault with them; the good among the spoilt by less.
-LIKING = 0.5
+LIKING = 1.5
 
 
 @dataclass(frozen=True)

@@ -371,7 +371,11 @@ def test_hints_of_a_mirrored_take_are_mirrored() -> None:
         rotation=track.rotation * np.array([-1.0, 1.0, -1.0]),
     )
     camera = CameraProposal(**dict.fromkeys((f.name for f in fields(CameraProposal)), None))  # type: ignore[arg-type]
-    measures = {name: bound for _, name, bound in (*LEAST, *MOST)} | {"jerk": 4.0, "headroom_error": 0.5}
+    measures = {name: bound for _, name, bound in (*LEAST, *MOST)} | {
+        "jerk": 4.0,
+        "headroom_error": 0.5,
+        "company_cut": 0.0,
+    }
     measures |= {"interest": 1.0, "size_drift": 0.0, "angular_speed": 9.0}
     here, there = (hints_of(replace(camera, track=t, measures=measures)) for t in (track, other))
     assert here["jerk"] == 2.0

@@ -14,15 +14,12 @@ from numpy.typing import NDArray
 from .composition import broken
 from .framing import Array
 from .subject import Subject
-from .takes import Bools, Picture, Takes, mean_of, within
-from .together import behind_heads
+from .takes import Bools, Picture, Takes, mean_of, pictured, turned, within
+from .together import ENOUGH, behind_heads
 from .track import project
-from .vectors import dot, length
 
 #: One who is nearer than the subject counts in full, one so many times as far away hardly any more.
 _FAR = 3.0
-#: A face turned more than this to the camera does not make up for a back (cosine).
-_ENOUGH = 0.3
 #: Metres before the camera from which on somebody is in its picture.
 _BEFORE = 0.2
 
@@ -75,14 +72,11 @@ def company_shown(
     share = np.where(counts > 0, (seen & here).sum(axis=2) / np.maximum(counts, 1), 1.0)
     faces, cropped, cut = (np.zeros(len(camera)) for _ in range(3))
     for k, one in enumerate(people):
-        to_camera = camera - one.landmarks["eyes"][at]
-        cosine = dot(to_camera, one.face[None, at]) / np.maximum(length(to_camera), 1e-9)
-        faces += mean_of(np.minimum(cosine, _ENOUGH), takes.window & here[:, k]) / len(people)
-        names = list(one.landmarks)
-        points = np.stack([one.landmarks[name][at] for name in names], axis=1)
-        found = Picture(names, *project(points[None], camera, axes, focal, takes.track.sensor))
+        cosine = np.minimum(turned(one, at, camera), ENOUGH)
+        faces += mean_of(cosine, takes.window & here[:, k]) / len(people)
+        found = pictured(takes, one, at, camera, axes)
         cropped = np.maximum(cropped, broken(takes, one, found))
-        there = within(found.of("pocket"), found.depth[:, :, names.index("pocket")], 0.0)
+        there = within(found.of("pocket"), found.depth[:, :, found.names.index("pocket")], 0.0)
         there = there & takes.window & here[:, k]
         over = np.where(there, -found.of("crown")[..., 1], 0.0).max(axis=1)
         cut = np.maximum(cut, np.clip(over, 0.0, 2.0))

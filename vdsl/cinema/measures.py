@@ -23,7 +23,7 @@ from .gestures import face_covered, hands_missed
 from .score import geometry_score as geometry_score
 from .sight import backdrop_gaps, clear_lines, clear_of_people, hidden_walls
 from .subject import SIGHT, Subject
-from .takes import Bools, Picture, Takes, key_sample, mean_of, samples, visibility, within
+from .takes import Bools, Picture, Takes, key_sample, mean_of, samples, turned, visibility, within
 from .together import everybody_measured, everybody_seen
 from .track import CameraTrack, camera_axes, project
 from .vectors import dot, length
@@ -115,7 +115,7 @@ def measure(takes: Takes, subject: Subject, world: World, fps: float) -> Measure
     values["company_cut"] = company_cut(takes, subject, at, camera, axes, picture, unhidden)
     values["foreground"] = _foreground(takes, world, at, camera, axes, picture, hidden)
     values |= _motion(track, takes.roll, fps)
-    values["face"] = _face(takes, subject, at, camera, points[:, names.index("eyes")])
+    values["face"] = mean_of(turned(subject, at, camera), takes.window)
     if len(subject.members) > 1:
         values |= everybody_measured(takes, subject, at, camera, axes, seen_from)
     if subject.kind == "place":  # nobody misses the edges of the box that stands for it
@@ -201,12 +201,6 @@ def _foreground(
     others = [(foot[at[some]], crown[at[some]], radius) for foot, crown, radius in takes.others]
     seen &= clear_of_people(camera[:, some], points, others)
     return np.asarray(1.0 - seen.mean(axis=(1, 2)))
-
-
-def _face(takes: Takes, subject: Subject, at: NDArray[np.int64], camera: Array, eyes: Array) -> Array:
-    to_camera = camera - eyes[None]
-    cosine = dot(to_camera, subject.face[None, at]) / np.maximum(length(to_camera), 1e-9)
-    return mean_of(cosine, takes.window)
 
 
 def _motion(track: CameraTrack, roll: float, fps: float) -> dict[str, Array]:

@@ -12,7 +12,9 @@ from numpy.typing import NDArray
 from . import space
 from .framing import Array
 from .sizes import Size
-from .track import CameraTrack
+from .subject import Subject
+from .track import CameraTrack, project
+from .vectors import dot, length
 
 Bools = NDArray[np.bool_]
 
@@ -61,6 +63,19 @@ class Picture:
 
     def of(self, name: str) -> Array:
         return np.asarray(self.xy[:, :, self.names.index(name)])
+
+
+def pictured(takes: Takes, one: Subject, at: NDArray[np.int64], camera: Array, axes: Array) -> Picture:
+    """Where somebody's landmarks are in the pictures of the frames ``at``."""
+    names = list(one.landmarks)
+    points = np.stack([one.landmarks[name][at] for name in names], axis=1)
+    return Picture(names, *project(points[None], camera, axes, takes.track.focal[:, at], takes.track.sensor))
+
+
+def turned(one: Subject, at: NDArray[np.int64], camera: Array) -> Array:
+    """Cosine between a face and the direction from its eyes to the camera, [P, F]."""
+    to_camera = camera - one.landmarks["eyes"][at]
+    return np.asarray(dot(to_camera, one.face[None, at]) / np.maximum(length(to_camera), 1e-9))
 
 
 def mean_of(values: Array | Bools, window: Bools) -> Array:

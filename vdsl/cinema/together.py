@@ -17,7 +17,7 @@ from .framing import Array
 from .gestures import face_covered, hands_missed
 from .sight import clear_of_people
 from .subject import SIGHT, Subject
-from .takes import Bools, Picture, Takes, mean_of, visibility, within
+from .takes import Bools, Takes, mean_of, pictured, turned, visibility, within
 from .track import project
 from .vectors import dot, length
 
@@ -29,7 +29,7 @@ _FACES, _TO_US = 0.35, 0.25
 _MARGIN = 0.2  # radius of one of them in the way of another, metres
 #: Who acts counts as much of the faces as that, all others share the rest; and a face turned to the camera
 #: does not make up for a back: from this cosine on (nearly in profile) more is no better.
-_WHO_ACTS, _ENOUGH = 0.6, 0.3
+_WHO_ACTS, ENOUGH = 0.6, 0.3
 
 
 def everybody_seen(
@@ -105,20 +105,18 @@ def everybody_measured(
 
     seen_from: which of points [F, K, 3] nothing but the members hides, bool [P, F, K]
     """
-    focal = takes.track.focal[:, at]
     found: list[dict[str, Array]] = []
     for one in subject.members:
-        names = list(one.landmarks)
-        points = np.stack([one.landmarks[n][at] for n in names], axis=1)
-        picture = Picture(names, *project(points[None], camera, axes, focal, takes.track.sensor))
-        sight = [names.index(n) for n in SIGHT]
+        picture = pictured(takes, one, at, camera, axes)
+        points = np.stack([one.landmarks[n][at] for n in SIGHT], axis=1)
+        sight = [picture.names.index(n) for n in SIGHT]
         inside = within(picture.xy[:, :, sight], picture.depth[:, :, sight], 0.0)
         bodies = [
             (other.position[at], other.landmarks["crown"][at], _MARGIN)
             for other in subject.members
             if other is not one
         ]
-        seen = seen_from(points[:, sight]) & clear_of_people(camera, points[:, sight], bodies)
+        seen = seen_from(points) & clear_of_people(camera, points, bodies)
         found.append(visibility(takes, inside, seen) | {"head_cropped": broken(takes, one, picture)})
         shown = (inside & seen)[:, :, [SIGHT.index(name) for name in ("hand_l", "hand_r")]]
         found[-1]["hands_missed"] = hands_missed(takes, one, at, camera, shown)
@@ -132,8 +130,6 @@ def everybody_measured(
 def _faces(takes: Takes, subject: Subject, at: NDArray[np.int64], camera: Array) -> Array:
     total = np.zeros(len(camera))
     for i, one in enumerate(subject.members):
-        to_camera = camera - one.landmarks["eyes"][at]
-        cosine = dot(to_camera, one.face[None, at]) / np.maximum(length(to_camera), 1e-9)
         share = _WHO_ACTS if i == 0 else (1.0 - _WHO_ACTS) / max(len(subject.members) - 1, 1)
-        total += share * mean_of(np.minimum(cosine, _ENOUGH), takes.window)
+        total += share * mean_of(np.minimum(turned(one, at, camera), ENOUGH), takes.window)
     return total

@@ -125,9 +125,9 @@ def test_the_discriminator_judges_the_same_way_twice(built):
         vdsl.compile(folder / "story.vds", folder / name, settings, device="cpu")
     assert _documents(folder / "judged") == _documents(folder / "judged-again")
     document = json.loads((folder / "judged" / "storyboard.json").read_text())
-    scores = [take["score"] for shot in document["shots"] for take in shot["takes"]]
-    assert len(set(scores)) == 4
-    assert all(0.0 <= score <= 1.0 for score in scores), scores  # six decimals: a poor walk may have 0
+    takes = [take for shot in document["shots"] for take in shot["takes"]]
+    assert len({take["logit"] for take in takes}) == 4
+    assert all(0.0 <= take["score"] <= 1.0 for take in takes)  # to six decimals: of several with faults 0
     report = json.loads((folder / "judged" / "report.json").read_text())
     assert next(s["count"] for s in report["stages"] if s["name"] == "rank") == 12 * 8  # frames
 

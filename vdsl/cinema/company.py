@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 from .composition import broken
 from .framing import Array
 from .subject import Subject
-from .takes import Bools, Picture, Takes, mean_of, pictured, turned, within
-from .together import ENOUGH, behind_heads
+from .takes import Bools, Picture, Takes, mean_of, pictured, within
+from .together import behind_heads, turned_among
 from .track import project
 
 #: One who is nearer than the subject counts in full, one so many times as far away hardly any more.
@@ -72,8 +72,7 @@ def company_shown(
     share = np.where(counts > 0, (seen & here).sum(axis=2) / np.maximum(counts, 1), 1.0)
     faces, cropped, cut = (np.zeros(len(camera)) for _ in range(3))
     for k, one in enumerate(people):
-        cosine = np.minimum(turned(one, at, camera), ENOUGH)
-        faces += mean_of(cosine, takes.window & here[:, k]) / len(people)
+        faces += mean_of(turned_among(one, at, camera), takes.window & here[:, k]) / len(people)
         found = pictured(takes, one, at, camera, axes)
         cropped = np.maximum(cropped, broken(takes, one, found))
         there = within(found.of("pocket"), found.depth[:, :, found.names.index("pocket")], 0.0)

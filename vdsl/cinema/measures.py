@@ -45,7 +45,8 @@ MEASURES = (
     "lead_room",  # more room ahead of the face than behind: −1..1, 0 where it looks at the camera
     "thirds_error",  # distance of the eyes from the upper third (from above: the middle one), of its height
     "interest",  # share of the other points that matter (thing in hand, partner) in the frame and not hidden
-    "empty",  # share of the time in which neither any of the subject nor any of those points is in the frame
+    "empty",  # share of the time in which neither any of the subject nor any of those points is in the frame,
+    # and more by ENDS_EMPTY where the last frame is such a one
     "walk_missed",  # share of the way the subject goes on which nothing of it is seen; 0 for a step or two
     "hands_missed",  # share of the time hands are at work in which neither is seen; 0 for close-ups
     "face_covered",  # share of the face that the subject's own arms hide, beyond what they have to
@@ -63,6 +64,9 @@ MEASURES = (
 )
 
 _A_WALK = 1.0  # metres that count as going somewhere
+#: What an end on nobody and nothing counts in ``empty``: of a camera that comes from somewhere one waits for
+#: what it finds; one that leaves somebody is to lead to something.
+ENDS_EMPTY = 0.3
 
 
 @dataclass(frozen=True, eq=False)
@@ -111,7 +115,7 @@ def measure(takes: Takes, subject: Subject, world: World, fps: float) -> Measure
     shown = _shown(takes, world, at, camera, axes, hidden, others)
     values["interest"] = _interest(takes, shown)
     somebody = in_sight.any(axis=-1) | inside[:, :, names.index("eyes")] | shown.any(axis=-1)
-    values["empty"] = 1.0 - somebody.mean(axis=1)
+    values["empty"] = np.minimum(1.0 - somebody.mean(axis=1) + ENDS_EMPTY * ~somebody[:, -1], 1.0)
     values["company_cut"] = company_cut(takes, subject, at, camera, axes, picture, unhidden)
     values["foreground"] = _foreground(takes, world, at, camera, axes, picture, hidden)
     values |= _motion(track, takes.roll, fps)

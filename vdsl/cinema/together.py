@@ -28,8 +28,9 @@ _HEAD = 0.11  # half a head's width and its hair, metres
 _FACES, _TO_US = 0.35, 0.25
 _MARGIN = 0.2  # radius of one of them in the way of another, metres
 #: Who acts counts as much of the faces as that, all others share the rest; and a face turned to the camera
-#: does not make up for a back: from this cosine on (nearly in profile) more is no better.
-_WHO_ACTS, ENOUGH = 0.6, 0.3
+#: does not make up for a back: from this cosine on (nearly in profile) more is no better. It is as good among
+#: several as that of three quarters is of somebody alone.
+_WHO_ACTS, _ENOUGH, _ALONE = 0.6, 0.3, 0.7
 
 
 def everybody_seen(
@@ -127,9 +128,14 @@ def everybody_measured(
     return out | {"face": _faces(takes, subject, at, camera)}
 
 
+def turned_among(one: Subject, at: NDArray[np.int64], camera: Array) -> Array:
+    """How well somebody among several is turned to the camera, [P, F]: as a cosine would be of one alone."""
+    return -1.0 + (np.minimum(turned(one, at, camera), _ENOUGH) + 1.0) * (1.0 + _ALONE) / (1.0 + _ENOUGH)
+
+
 def _faces(takes: Takes, subject: Subject, at: NDArray[np.int64], camera: Array) -> Array:
     total = np.zeros(len(camera))
     for i, one in enumerate(subject.members):
         share = _WHO_ACTS if i == 0 else (1.0 - _WHO_ACTS) / max(len(subject.members) - 1, 1)
-        total += share * mean_of(np.minimum(turned(one, at, camera), ENOUGH), takes.window)
+        total += share * mean_of(turned_among(one, at, camera), takes.window)
     return total

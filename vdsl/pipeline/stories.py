@@ -28,6 +28,11 @@ _TEST_SHARE = 0.2
 _MOVEMENT_ODDS = (10, 4, 1)
 #: How often one has a view of its own rather than the plain one.
 _VIEW_ODDS = 0.12
+#: In which sizes there is room for two.
+_SCALES_OF_VIEWS = {
+    "two-shot": ("medium-close-up", "medium", "cowboy", "medium-long", "full", "wide"),
+    "ots": ("medium-close-up", "medium", "cowboy"),
+}
 _FURTHER = tuple(word for word in FURTHER_MOVEMENTS if word != "rack-focus")
 _JOINED = (("push", "pull", "zoom-in", "pedestal-up"), ("pan-left", "pan-right", "tilt-up", "arc-left"))
 
@@ -142,7 +147,7 @@ def _camera(rng: random.Random, other: str) -> str:
     view = ""
     if rng.random() < _VIEW_ODDS:
         view = rng.choice((" two-shot", f" ots {other}"))
-        scale = rng.choice(("medium-close-up", "medium", "cowboy")) if "ots" in view else scale
+        scale = rng.choice(_SCALES_OF_VIEWS[view.split()[0]])
     return f"/ ({movement} {scale} {angle}{view})"
 
 

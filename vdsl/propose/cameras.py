@@ -14,6 +14,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from ..cinema.flaws import flaws
 from ..cinema.measures import Measured, measure
 from ..cinema.score import geometry_scores
 from ..cinema.sizes import Size, size_of
@@ -23,7 +24,7 @@ from ..cinema.takes import Takes, samples
 from ..cinema.track import CameraTrack
 from ..lang.ir import Shot
 from .candidates import Shooting
-from .drawing import Sample, draw, generator, nudged
+from .drawing import Sample, draw, generator, near, nudged, put_together
 from .focusing import focused, unseen_racks
 from .rejection import REASONS, SOFT, no_room, reasons
 from .shooting import shoot
@@ -40,19 +41,25 @@ _HOPE = 0.6  # of the share that was good so far: what is counted on in the next
 _LEAST, _MOST = 0.05, 12  # the least share counted on, and candidates in one round for each that is wanted
 _RACKED = 3  # times as many where two have to be seen well, at the ends of a rack-focus
 _FEW = 8  # with fewer takes than this, ones that only look less well are let back in
+#: Where less than that share of what is wanted has no fault, it is looked for beside the best, so often, so
+#: many at a time for each that is wanted, beside so many of them.
+_FAULTLESS, _SEARCHES, _BESIDE, _BEST = 0.25, 3, 1.5, 12
+_GLIMPSE = 0.2  # least share of the subject that is seen of what is let back in
+_PLAIN = 1.5  # how many of its kind what has no fault may follow, more than what has one
 
 
 @dataclass(frozen=True, eq=False)
 class _Batch:
-    """Candidates of one story, measured: tracks [P], what was drawn, and why each is thrown out."""
+    """Candidates of one story, measured: tracks [P], what was drawn, why each is thrown out, and in how many
+    criteria each has a fault."""
 
     story: int
-    azimuth: NDArray[np.int64]
-    movement: NDArray[np.int64]
+    sample: Sample
     shooting: Shooting
     measured: Measured
     scores: NDArray[np.float64]
     reason: NDArray[np.int64]
+    faults: NDArray[np.int64]
 
 
 def propose_cameras(shot: Shot, stories: Sequence[StoryProposal], filming: Filming) -> ProposalGrid:
@@ -74,18 +81,51 @@ def propose_cameras(shot: Shot, stories: Sequence[StoryProposal], filming: Filmi
         if number == _ROUNDS:  # what the grid has no room for may have some beside it
             sample = nudged(sample, rng)
         considered += count
-        for batch in _consider(shot, stories, subjects, stages, filming, sample, rejected):
-            batches.append(batch)
-            good += int((batch.reason < 0).sum())
-            rejected.update(REASONS[k] for k in batch.reason[batch.reason >= 0])
+        found = _consider(shot, stories, subjects, stages, filming, sample, rejected)
+        batches.extend(found)
+        good += sum(int((b.reason < 0).sum()) for b in found)
         if good >= (wanted if number < _ROUNDS - 1 else few):
             break
+    if filming.rig == "cinema":  # the paper's stand on its grid
+        for number in range(_SEARCHES):
+            best = _best(batches)
+            if best is None or _faultless(batches) >= _FAULTLESS * wanted:
+                break
+            rng = generator(filming.seed, shot.drawn_as, f"beside the best {number}")
+            sample = near(best.only(np.resize(np.arange(len(best.story)), int(_BESIDE * wanted))), rng)
+            considered += len(sample.story)
+            batches.extend(_consider(shot, stories, subjects, stages, filming, sample, rejected))
     chosen = _choose(batches, wanted)
     let_in = [batches[b].reason[p] for b, p in chosen if batches[b].reason[p] >= 0]
     rejected.subtract(REASONS[k] for k in let_in)
     cameras = tuple(_proposal(i, batches[b], p, shot) for i, (b, p) in enumerate(chosen))
     counts = {k: v for k, v in sorted(rejected.items()) if v > 0}
     return ProposalGrid(shot.id, name, tuple(stories), cameras, considered, counts, len(let_in))
+
+
+def _soft(batch: _Batch) -> NDArray[np.bool_]:
+    """Which candidates [P] may be let back in where hardly anything else is left: of what they are about, at
+    least a little is seen."""
+    return np.asarray(np.isin(batch.reason, SOFT) & (batch.measured.values["visibility"] > _GLIMPSE))
+
+
+def _faultless(batches: Sequence[_Batch]) -> int:
+    """How many candidates there are with nothing against them."""
+    return sum(int(((b.reason < 0) & (b.faults == 0)).sum()) for b in batches)
+
+
+def _best(batches: Sequence[_Batch]) -> Sample | None:
+    """What was drawn for the best candidates there are, fewest faults first, or where none is good for those
+    that only look less well; None where there are none of these either."""
+    kept = [np.flatnonzero(b.reason < 0) for b in batches]
+    if not sum(len(rows) for rows in kept):
+        kept = [np.flatnonzero(_soft(b)) for b in batches]
+    if not sum(len(rows) for rows in kept):
+        return None
+    faults = np.concatenate([b.faults[rows] for b, rows in zip(batches, kept, strict=True)])
+    scores = np.concatenate([b.scores[rows] for b, rows in zip(batches, kept, strict=True)])
+    drawn = put_together([b.sample.only(rows) for b, rows in zip(batches, kept, strict=True)])
+    return drawn.only(np.lexsort((-scores, faults))[:_BEST])
 
 
 def _consider(
@@ -97,7 +137,7 @@ def _consider(
     sample: Sample,
     rejected: Counter[str],
 ) -> list[_Batch]:
-    """Shoot, measure and judge candidates; counts those without room in ``rejected``."""
+    """Shoot, measure and judge candidates; counts those to be thrown out in ``rejected``."""
     out = []
     for s, subject in enumerate(subjects):
         rows = np.flatnonzero(sample.story == s)
@@ -107,18 +147,11 @@ def _consider(
         rejected.update(REASONS[k] for k in np.delete(tried.reason, tried.kept))
         if tried.measured is None:
             continue
-        shooting = tried.shooting.only(tried.kept)
-        out.append(
-            _Batch(
-                s,
-                sample.azimuth[rows][shooting.order],
-                sample.movement[rows][shooting.order],
-                shooting,
-                tried.measured,
-                geometry_scores(tried.measured.values),
-                tried.reason[tried.kept],
-            )
-        )
+        shooting, values = tried.shooting.only(tried.kept), tried.measured.values
+        reason, drawn = tried.reason[tried.kept], sample.only(rows[shooting.order])
+        faults = np.sum(list(flaws(values).values()), axis=0)
+        out.append(_Batch(s, drawn, shooting, tried.measured, geometry_scores(values), reason, faults))
+        rejected.update(REASONS[k] for k in reason[reason >= 0])
     return out
 
 
@@ -236,16 +269,17 @@ def _choose(batches: Sequence[_Batch], wanted: int) -> list[tuple[int, int]]:
         return []
     where = [(i, p) for i, b in enumerate(batches) for p in range(len(b.reason))]
     scores = np.concatenate([b.scores for b in batches])
+    plain = np.concatenate([b.faults == 0 for b in batches])
     pool = np.flatnonzero(reason < 0)
     if len(pool) < min(_FEW, wanted):
-        soft = np.flatnonzero(np.isin(reason, SOFT))
+        soft = np.flatnonzero(np.concatenate([_soft(b) for b in batches]))
         soft = soft[np.argsort(-scores[soft], kind="stable")]
         pool = np.concatenate([pool, soft[: min(_FEW, wanted) - len(pool)]])
     keys = np.stack(
         [
-            np.concatenate([b.azimuth for b in batches]),
-            np.concatenate([np.full(len(b.reason), b.story) for b in batches]),
-            np.concatenate([b.movement for b in batches]),
+            np.concatenate([b.sample.azimuth for b in batches]),
+            np.concatenate([b.sample.story for b in batches]),
+            np.concatenate([b.sample.movement for b in batches]),
             np.concatenate([b.shooting.strata for b in batches]),
         ],
         axis=1,
@@ -254,7 +288,7 @@ def _choose(batches: Sequence[_Batch], wanted: int) -> list[tuple[int, int]]:
     taken = np.zeros(len(pool), bool)
     counts = [np.zeros(keys[:, k].max() + 1 if len(keys) else 1) for k in range(keys.shape[1])]
     for _ in range(min(wanted, len(pool))):
-        crowd = sum(c[keys[:, k]] for k, c in enumerate(counts)) - 1.5 * scores[pool]
+        crowd = sum(c[keys[:, k]] for k, c in enumerate(counts)) - 1.5 * scores[pool] - _PLAIN * plain[pool]
         best = int(np.where(taken, np.inf, crowd).argmin())
         taken[best] = True
         picked.append(int(pool[best]))

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import hashlib
 import math
-from dataclasses import dataclass, replace
+from collections.abc import Sequence
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -49,6 +50,15 @@ class Sample:
     reach: NDArray[np.float64]
     lam_too: NDArray[np.float64]
     noise: NDArray[np.int64]
+
+    def only(self, rows: NDArray[np.int64]) -> Sample:
+        """Some of the candidates, in the order of ``rows`` [M]; a row may be there several times."""
+        return Sample(*(getattr(self, f.name)[rows] for f in fields(Sample)))
+
+
+def put_together(parts: Sequence[Sample]) -> Sample:
+    """Several samples as one."""
+    return Sample(*(np.concatenate([getattr(p, f.name) for p in parts]) for f in fields(Sample)))
 
 
 def draw(shot: Shot, stories: int, count: int, rng: np.random.Generator) -> Sample:
@@ -97,3 +107,32 @@ def nudged(sample: Sample, rng: np.random.Generator) -> Sample:
     reach = _NEARER * (_FARTHER / _NEARER) ** rng.random(count)
     aside = 0.5 + _ASIDE * (sample.jitter - 0.5)
     return replace(sample, jitter=aside, reach=reach, lens=sample.lens**2)
+
+
+#: How far a camera that is looked for near another one may be off it (one standard deviation): degrees around
+#: the subject, and shares of the range of what else is drawn; and how often it has another easing.
+_AROUND, _BESIDE, _OTHER_EASE = 9.0, 0.15, 0.3
+
+
+def near(sample: Sample, rng: np.random.Generator) -> Sample:
+    """As many candidates, each a little off one of ``sample``: what is in words and whole numbers, and the
+    distance, is kept."""
+
+    def beside(values: NDArray[np.float64]) -> NDArray[np.float64]:
+        return np.clip(values + rng.normal(0.0, _BESIDE, len(values)), 0.0, 1.0)
+
+    def eased(lam: NDArray[np.float64]) -> NDArray[np.float64]:
+        return np.where(rng.random(len(lam)) < _OTHER_EASE, rng.permutation(lam), lam)
+
+    aside = sample.jitter + rng.normal(0.0, _AROUND / (2 * ASIDE), len(sample.jitter))
+    return replace(
+        sample,
+        jitter=np.clip(aside, 0.5 - 0.5 * _ASIDE, 0.5 + 0.5 * _ASIDE),
+        lens=beside(sample.lens),
+        mu=beside(sample.mu),
+        turn=beside(sample.turn),
+        travel=beside(sample.travel),
+        lead=beside(sample.lead),
+        lam=eased(sample.lam),
+        lam_too=eased(sample.lam_too),
+    )

@@ -7,19 +7,22 @@ backs, hide each other or lose their heads is a poor one. Assumes a subject that
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from .composition import broken
 from .framing import Array
-from .subject import Subject
-from .takes import Bools, Picture, Takes, mean_of, pictured, within
+from .subject import SIGHT, Subject
+from .takes import Bools, Picture, Takes, mean_of, pictured, visibility, within
 from .together import behind_heads, turned_among
 from .track import project
 
 #: One who is nearer than the subject counts in full, one so many times as far away hardly any more.
 _FAR = 3.0
+#: What is to be seen of somebody in a place.
+_UPPER = SIGHT[:3]
 #: Metres before the camera from which on somebody is in its picture.
 _BEFORE = 0.2
 
@@ -61,7 +64,8 @@ def company_shown(
     seen_from: Callable[[Array], Bools],
 ) -> dict[str, Array]:
     """Of a place with people in it: ``interest``, how many of their heads are seen, ``face``, how they are
-    turned to the camera, ``head_cropped`` and ``head_cut``, of the worst off. seen_from: as above"""
+    turned to the camera, what is seen of them (:func:`~vdsl.cinema.takes.visibility`), each counted by how long
+    they are there, and ``head_cropped`` and ``head_cut``, of the worst off. seen_from: as above"""
     people, focal = subject.company, takes.track.focal[:, at]
     here = np.stack([subject.holds(one)[at] for one in people], axis=1)  # [F, people]
     eyes = np.stack([one.landmarks["eyes"][at] for one in people], axis=1)
@@ -71,13 +75,32 @@ def company_shown(
     counts = here.sum(axis=1)
     share = np.where(counts > 0, (seen & here).sum(axis=2) / np.maximum(counts, 1), 1.0)
     faces, cropped, cut = (np.zeros(len(camera)) for _ in range(3))
+    stays = here.sum(axis=0) / max(int(here.sum()), 1)
+    sight: dict[str, Array] = {}
     for k, one in enumerate(people):
         faces += mean_of(turned_among(one, at, camera), takes.window & here[:, k]) / len(people)
         found = pictured(takes, one, at, camera, axes)
+        own = replace(takes, window=takes.window & here[:, k])
+        for name, value in _sight(own, one, at, found, seen_from).items():
+            sight[name] = sight.get(name, 0.0) + stays[k] * value
         cropped = np.maximum(cropped, broken(takes, one, found))
         there = within(found.of("pocket"), found.depth[:, :, found.names.index("pocket")], 0.0)
         there = there & takes.window & here[:, k]
         over = np.where(there, -found.of("crown")[..., 1], 0.0).max(axis=1)
         cut = np.maximum(cut, np.clip(over, 0.0, 2.0))
     shown = mean_of(share, takes.window)
-    return {"interest": shown, "face": faces, "head_cropped": cropped, "head_cut": cut}
+    return {"interest": shown, "face": faces, "head_cropped": cropped, "head_cut": cut} | sight
+
+
+def _sight(
+    takes: Takes,
+    one: Subject,
+    at: NDArray[np.int64],
+    picture: Picture,
+    seen_from: Callable[[Array], Bools],
+) -> dict[str, Array]:
+    """What is seen of somebody in a place: of head and chest, as tables and seats hide the rest."""
+    index = [picture.names.index(name) for name in _UPPER]
+    inside = within(picture.xy[:, :, index], picture.depth[:, :, index], 0.0)
+    points = np.stack([one.landmarks[name][at] for name in _UPPER], axis=1)
+    return visibility(takes, inside, seen_from(points))

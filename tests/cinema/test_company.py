@@ -96,6 +96,24 @@ def test_a_picture_of_a_place_shows_who_is_in_it() -> None:
     assert near["company_cut"] > 0.5
 
 
+def behind_a_table(high: float) -> dict[str, float]:
+    """Two people seen over something long that is so high."""
+    boxes = ((2.0, 0.6, high / 2, 0.3, 4.0, high / 2, 0.0),)
+    area = place("hall", (-4.0, -4.0, 0.0), (4.0, 4.0, 3.0), FRAMES)
+    told, ground = replace(two((0.0, 1.2)), variant=STILL), world(boxes=boxes)
+    people = subject_of(replace(shot(), focus=None), told, replace(FILMING, world=ground)).company
+    takes = takes_of("wide", "place", (5.0, 0.6, 1.5), (0.0, 0.0, 1.2))
+    found = measure(takes, replace(area, company=people), ground, 24.0).values
+    return {k: float(v[0]) for k, v in found.items()}
+
+
+def test_in_a_place_heads_and_chests_are_to_be_seen_and_legs_need_not() -> None:
+    table, wall = behind_a_table(0.9), behind_a_table(2.4)
+    seen = ("visibility", "head_visible", "ends_visible")
+    assert [table[name] for name in seen] == [1.0, 1.0, 1.0]
+    assert [wall[name] for name in seen] == [0.0, 0.0, 0.0]
+
+
 def test_of_a_room_with_people_faces_are_proposed_first() -> None:
     """Both look along x: the takes with the best geometry see them from before or aside, not from behind."""
     said = replace(shot("static", "full"), focus=None, proposals=60)

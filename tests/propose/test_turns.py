@@ -7,6 +7,7 @@ import pytest
 from filmset import shot, skeleton, standing, still_story, story, world
 from numpy.typing import NDArray
 
+from vdsl.cinema.measures import ENDS_EMPTY
 from vdsl.cinema.subject import Subject, person
 from vdsl.cinema.track import camera_axes, project
 from vdsl.propose.cameras import Filming, propose_cameras
@@ -92,3 +93,20 @@ def test_a_picture_with_a_body_in_it_is_not_empty() -> None:
         anything = [in_frame(c, marks[name]) for name in ("eyes", "chin", "pocket", "waist", "knees")]
         if np.any(anything, axis=0).all():
             assert c.measures["empty"] == 0.0
+
+
+def test_an_end_on_nobody_counts_more_than_a_beginning() -> None:
+    acted = still_story(BODY)
+    marks = subject_of(acted).landmarks
+    begins: list[float] = []  # how much more is counted than the time
+    ends: list[float] = []
+    for c in filmed(acted, "pan-left"):
+        there = np.any([in_frame(c, marks[name]) for name in ("eyes", "waist", "hand_l", "hand_r")], axis=0)
+        if there.any() and there[0] != there[-1]:
+            time = 1.0 - float(there.mean())
+            if time < 1.0 - ENDS_EMPTY:
+                (ends if there[0] else begins).append(c.measures["empty"] - time)
+    assert len(begins) >= 3
+    assert len(ends) >= 3
+    assert np.mean(begins) == pytest.approx(0.0, abs=0.08)
+    assert np.mean(ends) == pytest.approx(ENDS_EMPTY, abs=0.08)

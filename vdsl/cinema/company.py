@@ -64,8 +64,8 @@ def company_shown(
     seen_from: Callable[[Array], Bools],
 ) -> dict[str, Array]:
     """Of a place with people in it: ``interest``, how many of their heads are seen, ``face``, how they are
-    turned to the camera, what is seen of them (:func:`~vdsl.cinema.takes.visibility`), each counted by how long
-    they are there, and ``head_cropped`` and ``head_cut``, of the worst off. seen_from: as above"""
+    turned to the camera, what is seen of them (:func:`~vdsl.cinema.takes.visibility`), each counted by how
+    long they are there, and ``head_cropped`` and ``head_cut``, of the worst off. seen_from: as above"""
     people, focal = subject.company, takes.track.focal[:, at]
     here = np.stack([subject.holds(one)[at] for one in people], axis=1)  # [F, people]
     eyes = np.stack([one.landmarks["eyes"][at] for one in people], axis=1)

@@ -99,10 +99,22 @@ def test_a_roll_leans_that_way(movement: str, sign: int) -> None:
         assert roll[-1 if c.params["ending"] == "on" else 0] == pytest.approx(0.1)
 
 
+@pytest.mark.parametrize("movement", ["roll-left", "roll-right"])
+def test_a_roll_goes_with_one_who_walks(movement: str) -> None:
+    acted = walking_story(BODY)
+    who = subject(acted)
+    cameras = filmed(acted, movement, "medium")
+    assert len(cameras) == 40
+    for c in cameras:
+        assert achieved(c, who, "cinema").movement == movement  # type: ignore[arg-type]
+        assert c.measures["in_frame"] > 0.85
+        assert np.linalg.norm(c.track.position[-1] - c.track.position[0]) > 2.5
+
+
 def test_a_whip_is_still_then_quick_then_still() -> None:
     w = whip(72, 24.0)
-    assert (w[:20] == 0).all()
-    assert (w[40:] == 1).all()
+    assert (w[:11] == 0).all()
+    assert (w[20:] == 1).all()
     assert ((w > 0) & (w < 1)).sum() <= 8
     for c in filmed(still_story(BODY), "whip-pan-left"):
         yaw = c.track.rotation[:, 2]

@@ -1,4 +1,4 @@
-"""Where hardly any take is without a fault, more are looked for beside the best; who is not seen at all is not
+"""Where hardly any take has no fault, more are looked for beside the best; who is not seen at all is not
 offered."""
 
 from __future__ import annotations

@@ -43,7 +43,7 @@ _QUICK, _WOBBLE = 31, 1.5e-3  # frames of a wobble; least of one: metres, and tw
 _STEPS = 7.2  # frames over which steps are evened
 _TRAVELS = 0.3  # metres of somebody who goes
 #: What goes along with its subject by itself, and so needs not be called a follow besides.
-_ALONG = {"push", "pull", "arc", "crane", "dolly-zoom", "handheld"}
+_ALONG = {"push", "pull", "arc", "crane", "dolly-zoom", "handheld", "roll"}
 
 
 def read_movement(track: CameraTrack, subject: Subject) -> tuple[str, ...]:
@@ -54,7 +54,8 @@ def read_movement(track: CameraTrack, subject: Subject) -> tuple[str, ...]:
     seen = _Seen.of(track, subject)
     turns, others = _turns(seen), _lenses(seen) | ({"handheld"} if seen.shaken else set())
     straight = _slides(seen)
-    found = [_named(others | turns | moves) for moves in _ways(seen)]
+    rolls = any(turn.startswith("roll") for turn in turns)
+    found = [_named(others | turns | (moves - {"follow"} if rolls else moves)) for moves in _ways(seen)]
     if straight:
         found.insert(0, _named(others | straight | {turn for turn in turns if turn.startswith("roll")}))
     if seen.overhead:

@@ -76,7 +76,7 @@ class Shooting:
         for p, movement in enumerate(self.movements):
             kinds = families(movement)
             if kinds & {"whip-pan"}:
-                out[p] = time >= 0.65
+                out[p] = time >= 0.5
             elif kinds & {"tilt", "pan"}:
                 on, kept = self.draw.on[p], self.draw.kept[p] or self.second.kept[p]
                 if kept and "pan" in kinds:

@@ -38,7 +38,7 @@ PENALTIES = {
 PRIOR = 30.0
 #: And by how much a fault in a criterion (:mod:`vdsl.cinema.flaws`) lowers it: what is plainly amiss is not
 #: made up for by what else is good.
-FLAW = 8.0
+FLAW = 14.0
 
 
 def parts(measures: Mapping[str, NDArray[np.float64] | float]) -> dict[str, NDArray[np.float64]]:

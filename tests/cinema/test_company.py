@@ -114,6 +114,13 @@ def test_in_a_place_heads_and_chests_are_to_be_seen_and_legs_need_not() -> None:
     assert [wall[name] for name in seen] == [0.0, 0.0, 0.0]
 
 
+def test_one_of_two_in_a_place_is_enough_to_be_seen_and_both_are_better() -> None:
+    both, far = in_a_place(two((0.0, 1.2)), (5.0, 0.6, 1.5)), in_a_place(two((3.9, 3.9)), (5.0, 0.6, 1.5))
+    assert both["interest"] == 1.0
+    assert far["interest"] == 0.5, "Ben is beside the picture"
+    assert far["visibility"] == far["head_visible"] == far["ends_visible"] == 1.0
+
+
 def test_of_a_room_with_people_faces_are_proposed_first() -> None:
     """Both look along x: the takes with the best geometry see them from before or aside, not from behind."""
     said = replace(shot("static", "full"), focus=None, proposals=60)

@@ -64,8 +64,9 @@ def company_shown(
     seen_from: Callable[[Array], Bools],
 ) -> dict[str, Array]:
     """Of a place with people in it: ``interest``, how many of their heads are seen, ``face``, how they are
-    turned to the camera, what is seen of them (:func:`~vdsl.cinema.takes.visibility`), each counted by how
-    long they are there, and ``head_cropped`` and ``head_cut``, of the worst off. seen_from: as above"""
+    turned to the camera, what is seen (:func:`~vdsl.cinema.takes.visibility`) of who is seen best, less of
+    who is there for a shorter time, and ``head_cropped`` and ``head_cut``, of the worst off. seen_from: as
+    above"""
     people, focal = subject.company, takes.track.focal[:, at]
     here = np.stack([subject.holds(one)[at] for one in people], axis=1)  # [F, people]
     eyes = np.stack([one.landmarks["eyes"][at] for one in people], axis=1)
@@ -75,14 +76,14 @@ def company_shown(
     counts = here.sum(axis=1)
     share = np.where(counts > 0, (seen & here).sum(axis=2) / np.maximum(counts, 1), 1.0)
     faces, cropped, cut = (np.zeros(len(camera)) for _ in range(3))
-    stays = here.sum(axis=0) / max(int(here.sum()), 1)
+    stays = here.sum(axis=0) / max(int(here.sum(axis=0).max(initial=0)), 1)
     sight: dict[str, Array] = {}
     for k, one in enumerate(people):
         faces += mean_of(turned_among(one, at, camera), takes.window & here[:, k]) / len(people)
         found = pictured(takes, one, at, camera, axes)
         own = replace(takes, window=takes.window & here[:, k])
         for name, value in _sight(own, one, at, found, seen_from).items():
-            sight[name] = sight.get(name, 0.0) + stays[k] * value
+            sight[name] = np.maximum(sight.get(name, 0.0), stays[k] * value)
         cropped = np.maximum(cropped, broken(takes, one, found))
         there = within(found.of("pocket"), found.depth[:, :, found.names.index("pocket")], 0.0)
         there = there & takes.window & here[:, k]

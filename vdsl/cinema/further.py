@@ -22,9 +22,9 @@ Array = NDArray[np.float64]
 
 #: Families of this module; those of :mod:`.moves` may be parts too.
 FURTHER = ("crane", "roll", "dolly-zoom", "handheld", "whip-pan")
-#: Of these the camera stays by where the subject is at the key frame (but for a roll about one who goes).
-_FIXED = ("static", "zoom", "tilt", "pan", "dolly", "pedestal", "roll", "whip-pan")
-_GOES = 0.3  # metres that the path has to lead somewhere, for a camera that only rolls to go with it
+#: Of these the camera stays by where the subject is at the key frame. A roll goes where what it is joined to
+#: does; by itself it goes with the subject.
+_FIXED = ("static", "zoom", "tilt", "pan", "dolly", "pedestal", "whip-pan")
 WHIP_AT, WHIP_SECONDS = 0.2, 0.3  # middle of a whip, share of the take; how long it lasts
 _ZENITH = np.radians(4.0)  # how near to straight down a crane comes
 _SHAKE, _SWAY = 0.008, np.radians(0.28)  # hand-held: metres and radians, root mean square
@@ -55,9 +55,8 @@ def combined(
     draw, frames = parts[0].draw, len(path)
     kinds = [family(part.movement) for part in parts]
     last = np.where(draw.key == 1, frames - 1, 0)
-    fixed = all(kind in _FIXED for kind in kinds)
-    if set(kinds) <= {"roll", "static"} and "roll" in kinds:
-        fixed = float(np.linalg.norm(np.ptp(path, axis=0))) < _GOES
+    others = [kind for kind in kinds if kind != "roll"]
+    fixed = bool(others) and all(kind in _FIXED for kind in others)
     held = np.broadcast_to(path[last][:, None] if fixed else path[None], (len(last), frames, 3))
     r, theta, phi, focal = (
         np.repeat(v[:, None], frames, axis=1) for v in (draw.r, draw.theta, draw.phi, draw.focal)

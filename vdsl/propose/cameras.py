@@ -43,17 +43,16 @@ _RACKED = 3  # times as many where two have to be seen well, at the ends of a ra
 _FEW = 8  # with fewer takes than this, ones that only look less well are let back in
 #: Where less than that share of what is wanted has no fault, it is looked for beside the best, so often, so
 #: many at a time for each that is wanted, beside so many of them.
-_FAULTLESS, _SEARCHES, _BESIDE, _BEST = 0.25, 3, 1.5, 12
+_FAULTLESS, _SEARCHES, _MORE, _BEST = 0.25, 3, 1.5, 12
 _GLIMPSE = 0.2  # least share of the subject that is seen of what is let back in
 _PLAIN = 1.5  # how many of its kind what has no fault may follow, more than what has one
 
 
 @dataclass(frozen=True, eq=False)
 class _Batch:
-    """Candidates of one story, measured: tracks [P], what was drawn, why each is thrown out, and in how many
+    """Candidates of one story, measured: what was drawn, tracks [P], why each is thrown out, and in how many
     criteria each has a fault."""
 
-    story: int
     sample: Sample
     shooting: Shooting
     measured: Measured
@@ -69,10 +68,19 @@ def propose_cameras(shot: Shot, stories: Sequence[StoryProposal], filming: Filmi
     name = subjects[0].name if subjects and subjects[0].kind == "person" else None
     batches: list[_Batch] = []
     rejected: Counter[str] = Counter()
-    considered, good, wanted = 0, 0, shot.proposals
+    considered, wanted = 0, shot.proposals
     few = min(_FEW, wanted)
     hard = 1 if shot.focus_to is None else _RACKED
+
+    def consider(sample: Sample) -> None:
+        nonlocal considered
+        considered += len(sample.story)
+        batches.extend(_consider(shot, stories, subjects, stages, filming, sample, rejected))
+
     for number in range(_ROUNDS + 1):
+        good = _good(batches)
+        if good >= (wanted if number < _ROUNDS else few):
+            break
         # a few more than are wanted: another round costs more than they do
         share = max(_HOPE * good / considered, _LEAST / hard) if considered else 0.75
         count = int(np.clip((wanted - good) / share, 16, hard * _MOST * wanted))
@@ -80,21 +88,14 @@ def propose_cameras(shot: Shot, stories: Sequence[StoryProposal], filming: Filmi
         sample = draw(shot, len(stories), count, rng)
         if number == _ROUNDS:  # what the grid has no room for may have some beside it
             sample = nudged(sample, rng)
-        considered += count
-        found = _consider(shot, stories, subjects, stages, filming, sample, rejected)
-        batches.extend(found)
-        good += sum(int((b.reason < 0).sum()) for b in found)
-        if good >= (wanted if number < _ROUNDS - 1 else few):
-            break
+        consider(sample)
     if filming.rig == "cinema":  # the paper's stand on its grid
         for number in range(_SEARCHES):
             best = _best(batches)
             if best is None or _faultless(batches) >= _FAULTLESS * wanted:
                 break
             rng = generator(filming.seed, shot.drawn_as, f"beside the best {number}")
-            sample = near(best.only(np.resize(np.arange(len(best.story)), int(_BESIDE * wanted))), rng)
-            considered += len(sample.story)
-            batches.extend(_consider(shot, stories, subjects, stages, filming, sample, rejected))
+            consider(near(best.only(np.resize(np.arange(len(best.story)), int(_MORE * wanted))), rng))
     chosen = _choose(batches, wanted)
     let_in = [batches[b].reason[p] for b, p in chosen if batches[b].reason[p] >= 0]
     rejected.subtract(REASONS[k] for k in let_in)
@@ -109,8 +110,13 @@ def _soft(batch: _Batch) -> NDArray[np.bool_]:
     return np.asarray(np.isin(batch.reason, SOFT) & (batch.measured.values["visibility"] > _GLIMPSE))
 
 
+def _good(batches: Sequence[_Batch]) -> int:
+    """How many candidates there are that are not thrown out."""
+    return sum(int((b.reason < 0).sum()) for b in batches)
+
+
 def _faultless(batches: Sequence[_Batch]) -> int:
-    """How many candidates there are with nothing against them."""
+    """How many of these have no fault either."""
     return sum(int(((b.reason < 0) & (b.faults == 0)).sum()) for b in batches)
 
 
@@ -150,7 +156,7 @@ def _consider(
         shooting, values = tried.shooting.only(tried.kept), tried.measured.values
         reason, drawn = tried.reason[tried.kept], sample.only(rows[shooting.order])
         faults = np.sum(list(flaws(values).values()), axis=0)
-        out.append(_Batch(s, drawn, shooting, tried.measured, geometry_scores(values), reason, faults))
+        out.append(_Batch(drawn, shooting, tried.measured, geometry_scores(values), reason, faults))
         rejected.update(REASONS[k] for k in reason[reason >= 0])
     return out
 
@@ -304,7 +310,7 @@ def _proposal(index: int, batch: _Batch, row: int, shot: Shot) -> CameraProposal
     values["geometry"] = float(batch.scores[row])
     return CameraProposal(
         index=index,
-        story=batch.story,
+        story=int(batch.sample.story[row]),
         movement=batch.shooting.movements[row],
         scale=batch.shooting.scales[row],
         angle=batch.shooting.angles[row],

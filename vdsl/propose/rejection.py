@@ -58,7 +58,6 @@ _KEEP = {"follow", "arc", "crane", "dolly-zoom", "handheld", "roll"}
 #: What comes nearer or goes back straight, and what leaves it so.
 _STRAIGHT, _BESIDES = {"push", "pull", "dolly-zoom"}, {"roll", "static"}
 _FASTEST, _TURNS = 5.0, 130.0  # metres and degrees a second
-_SOME = 0.4  # of what has to be seen of a subject: of all people in a place
 _GROUND = 0.45  # metres over the floor of a lens that lies on the ground
 
 
@@ -116,15 +115,14 @@ def reasons(shooting: Shooting, measured: Measured, subject: Subject) -> NDArray
     keeps = np.array([families(m) <= _KEEP for m in shooting.movements])
     drift = np.where(moving, 0.0, v["size_drift"])
     holds = np.where(keeps & (not paper), 0.45, 0.9)
-    some = _SOME if subject.kind == "place" and subject.company else 1.0
     walked = float(np.linalg.norm(np.diff(subject.position, axis=0), axis=1).sum())
     asked = {
         "in_wall": measured.shown < _NEAR_WALL * _arm(shooting),
         "in_person": (measured.people < _NEAR_PERSON) | ((own < _NEAR_FACE) & (subject.kind == "person")),
         "subject_out_of_frame": v["in_frame"] < np.where(keeps, 0.85, 0.5 if walked > 0.5 else 0.7),
-        "subject_hidden": (v["visibility"] < 0.6 * some)
-        | (v["ends_visible"] < 0.4 * some)
-        | (v["head_visible"] < 0.5 * some)
+        "subject_hidden": (v["visibility"] < 0.6)
+        | (v["ends_visible"] < 0.4)
+        | (v["head_visible"] < 0.5)
         | (v["foreground"] > 0.5),
         "wrong_view": v["view"] < 0.7,
         "wrong_movement": _does_not_move(shooting, v),

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from vdsl.cinema.flaws import CRITERIA, LEAST, MOST, flaws
+from vdsl.cinema.flaws import CRITERIA, LEAST, MOST, flaws, gravity
 from vdsl.cinema.measures import MEASURES
 from vdsl.cinema.score import FLAW
 from vdsl.cinema.track import CameraTrack, look_at_rotation
@@ -32,12 +32,12 @@ def camera(index: int, azimuth: float = 0.0, **measures: float) -> CameraProposa
 
 
 def test_every_criterion_has_faults_and_counts() -> None:
-    assert {c for c, _, _ in (*LEAST, *MOST)} == set(CRITERIA)
+    assert {c for c, *_ in (*LEAST, *MOST)} == set(CRITERIA)
     assert sum(COUNTS.values()) == pytest.approx(1.0)
     assert not any(flaws(GOOD).values())
-    for criterion, name, limit in LEAST:
+    for criterion, name, limit, _ in LEAST:
         assert flaws(GOOD | {name: limit - 0.01})[criterion], name
-    for criterion, name, limit in MOST:
+    for criterion, name, limit, _ in MOST:
         assert flaws(GOOD | {name: limit * 1.05})[criterion], name
 
 
@@ -75,7 +75,20 @@ def test_faulty_takes_are_never_picked_and_no_two_look_alike() -> None:
 
 
 def test_a_fault_counts_in_what_the_geometry_adds_once_a_criterion() -> None:
-    best = prior(GOOD)
-    assert prior(GOOD | {"size_error": 0.3}) == pytest.approx(best - FLAW)  # in no part of the geometry score
-    assert prior(GOOD | {"size_error": 0.3, "view": 0.2}) == pytest.approx(best - FLAW)
-    assert prior(GOOD | {"size_error": 0.3, "ends_visible": 0.2}) == pytest.approx(best - 2 * FLAW)
+    best = prior(GOOD)  # size_error and view are in no part of the geometry score
+    assert prior(GOOD | {"size_error": 0.1001}) == pytest.approx(best - FLAW, abs=0.1)
+    assert prior(GOOD | {"size_error": 0.4}) == pytest.approx(best - 2 * FLAW)
+    assert prior(GOOD | {"size_error": 0.25, "view": 0.79}) == pytest.approx(best - 1.5 * FLAW)
+    assert prior(GOOD | {"size_error": 0.25, "ends_visible": 0.4}) == pytest.approx(best - 3 * FLAW)
+
+
+def test_of_faults_the_graver_one_counts_more_and_none_more_than_two() -> None:
+    for criterion, name, bound, worst in (*LEAST, *MOST):
+        shares = (0.01, 0.5, 1.0, 1.5)
+        found = [
+            float(gravity(GOOD | {name: bound + share * (worst - bound)})[criterion]) for share in shares
+        ]
+        assert found == pytest.approx([1.01, 1.5, 2.0, 2.0]), name
+    assert not any(gravity(GOOD).values())
+    less, more = judged((camera(0, empty=0.3), camera(1, empty=0.7)))
+    assert more < less < 0

@@ -371,7 +371,7 @@ def test_hints_of_a_mirrored_take_are_mirrored() -> None:
         rotation=track.rotation * np.array([-1.0, 1.0, -1.0]),
     )
     camera = CameraProposal(**dict.fromkeys((f.name for f in fields(CameraProposal)), None))  # type: ignore[arg-type]
-    measures = {name: bound for _, name, bound in (*LEAST, *MOST)} | {
+    measures = {name: bound for _, name, bound, _ in (*LEAST, *MOST)} | {
         "jerk": 4.0,
         "headroom_error": 0.5,
         "company_cut": 0.0,

@@ -87,7 +87,7 @@ def company_shown(
         cropped = np.maximum(cropped, broken(takes, one, found))
         there = within(found.of("pocket"), found.depth[:, :, found.names.index("pocket")], 0.0)
         there = there & takes.window & here[:, k]
-        over = np.where(there, -found.of("crown")[..., 1], 0.0).max(axis=1)
+        over = np.where(there, -found.of("top")[..., 1], 0.0).max(axis=1)
         cut = np.maximum(cut, np.clip(over, 0.0, 2.0))
     shown = mean_of(share, takes.window)
     return {"interest": shown, "face": faces, "head_cropped": cropped, "head_cut": cut} | sight

@@ -12,30 +12,30 @@ from numpy.typing import NDArray
 
 Measures = Mapping[str, NDArray[np.float64] | float]
 
-#: What is a fault: (criterion, measure, the least or the most of it that will do).
+#: What is a fault: (criterion, measure, the least or the most of it that will do, where it could not be worse).
 LEAST = (
-    ("visibility", "visibility", 0.95),
-    ("visibility", "head_visible", 0.85),
-    ("visibility", "ends_visible", 0.8),
-    ("visibility", "face", -0.6),
-    ("framing", "in_frame", 0.95),
-    ("framing", "view", 0.8),
-    ("lead_room", "lead_room", -0.12),
-    ("clearance", "clearance", 0.3),
+    ("visibility", "visibility", 0.95, 0.3),
+    ("visibility", "head_visible", 0.85, 0.0),
+    ("visibility", "ends_visible", 0.8, 0.0),
+    ("visibility", "face", -0.6, -1.0),
+    ("framing", "in_frame", 0.95, 0.3),
+    ("framing", "view", 0.8, 0.0),
+    ("lead_room", "lead_room", -0.12, -0.6),
+    ("clearance", "clearance", 0.3, 0.0),
 )
 MOST = (
-    ("visibility", "foreground", 0.05),
-    ("visibility", "face_covered", 0.3),
-    ("visibility", "backdrop_gap", 0.03),
-    ("visibility", "walk_missed", 0.5),
-    ("framing", "head_cut", 0.03),
-    ("framing", "feet_cut", 0.03),
-    ("framing", "size_error", 0.1),
-    ("framing", "empty", 0.25),
-    ("headroom", "headroom_error", 0.14),
-    ("thirds", "thirds_error", 0.2),
-    ("steadiness", "jerk", 8.0),
-    ("steadiness", "speed", 3.5),
+    ("visibility", "foreground", 0.05, 0.5),
+    ("visibility", "face_covered", 0.3, 1.0),
+    ("visibility", "backdrop_gap", 0.03, 0.4),
+    ("visibility", "walk_missed", 0.5, 1.0),
+    ("framing", "head_cut", 0.03, 0.4),
+    ("framing", "feet_cut", 0.03, 0.4),
+    ("framing", "size_error", 0.1, 0.4),
+    ("framing", "empty", 0.25, 0.9),
+    ("headroom", "headroom_error", 0.14, 0.5),
+    ("thirds", "thirds_error", 0.2, 0.5),
+    ("steadiness", "jerk", 8.0, 30.0),
+    ("steadiness", "speed", 3.5, 6.0),
 )
 #: Measures of which no picture tells: how near the walls around the camera are, and whether size and view are
 #: those that were asked for.
@@ -47,7 +47,7 @@ def flaws(measures: Measures, seen: bool = False) -> dict[str, NDArray[np.bool_]
     """By criterion, which of the takes [P] have a fault in it. seen: only those that a picture can show"""
     found = flaws_by_measure(measures)
     out = {name: np.zeros(np.shape(measures["visibility"]), bool) for name in CRITERIA}
-    for criterion, name, _ in (*LEAST, *MOST):
+    for criterion, name, *_ in (*LEAST, *MOST):
         if not (seen and name in UNSEEN):
             out[criterion] = out[criterion] | found[name]
     return out
@@ -56,5 +56,16 @@ def flaws(measures: Measures, seen: bool = False) -> dict[str, NDArray[np.bool_]
 def flaws_by_measure(measures: Measures) -> dict[str, NDArray[np.bool_]]:
     """By the name of a measure, which of the takes [P] have a fault in it."""
     m = {k: np.asarray(v, float) for k, v in measures.items()}
-    least = {name: m[name] < bound for _, name, bound in LEAST}
-    return least | {name: m[name] > bound for _, name, bound in MOST}
+    least = {name: m[name] < bound for _, name, bound, _ in LEAST}
+    return least | {name: m[name] > bound for _, name, bound, _ in MOST}
+
+
+def gravity(measures: Measures) -> dict[str, NDArray[np.float64]]:
+    """By criterion, how grave the fault of takes [P] in it is: 0 for none, 1 for one that is hardly one, and up
+    to 2 for what could not be worse. Of several faults in a criterion the gravest counts."""
+    found = flaws_by_measure(measures)
+    out = {name: np.zeros(np.shape(measures["visibility"])) for name in CRITERIA}
+    for criterion, name, bound, worst in (*LEAST, *MOST):
+        far = np.clip((np.asarray(measures[name], float) - bound) / (worst - bound), 0.0, 1.0)
+        out[criterion] = np.maximum(out[criterion], np.where(found[name], 1.0 + far, 0.0))
+    return out

@@ -22,6 +22,8 @@ LEAD = 0.13
 FILM = (30.0, 80.0)
 #: μ of what comes nearer, and of what goes away: below 1.05 nothing would be seen to move (section 4.1).
 INWARDS, OUTWARDS = (0.5, 0.8), (1.05, 1.2)
+#: Least degrees of an arc of ``rig cinema``: with less to go round there is room in more rooms, and time.
+_LEAST_ARC = 60.0
 _SEEN = 1.1  # least μ outwards of ``rig cinema``: less hardly reads as going back
 #: A dolly zoom's: more, as it is the background that has to be seen to change.
 _DOLLY_ZOOM = {"dolly-zoom-in": (0.5, 0.65), "dolly-zoom-out": (1.55, 2.15)}
@@ -86,7 +88,8 @@ def mu_range(movement: str, cinema: bool = True) -> tuple[float, float]:
 def turn_range(kind: str, cinema: bool = True) -> tuple[float, float]:
     """Degrees that a family turns."""
     low, high = TURNS.get(kind, TURNS["pan"])
-    return (LEAST_TURN if cinema and kind in ("tilt", "pan") else low), high
+    least = {"tilt": LEAST_TURN, "pan": LEAST_TURN, "arc": _LEAST_ARC} if cinema else {}
+    return least.get(kind, low), high
 
 
 def subspace(

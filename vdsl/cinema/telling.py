@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from .flaws import CRITERIA, flaws
+from .flaws import CRITERIA, gravity
 from .score import PENALTIES, WEIGHTS, geometry_score, parts
 
 Measures = Mapping[str, float]
@@ -128,8 +128,8 @@ def advantages(
 ) -> dict[str, float]:
     """By how much each part puts one take before another, largest first; negative where it is behind.
 
-    In points of the geometry score times ``scale``, and ``flaw`` for every criterion in which but one of them
-    has a fault; logits: what the discriminator gives both
+    In points of the geometry score times ``scale``, and ``flaw`` times the gravity of faults in every
+    criterion; logits: what the discriminator gives both
     """
     a, b = terms(measures), terms(other)
     pa, pb = penalties(measures), penalties(other)
@@ -137,7 +137,7 @@ def advantages(
     total = max((sum(t.points for t in a) + sum(t.points for t in b)) / 2, 1e-9)
     out = {x.part: scale * (x.points - y.points) * kept / total for x, y in zip(a, b, strict=True)}
     out |= {name: scale * kept * (pa[name] - pb[name]) / max((pa[name] + pb[name]) / 2, 1e-9) for name in pa}
-    here, there = flaws(measures), flaws(other)
+    here, there = gravity(measures), gravity(other)
     for name in CRITERIA if flaw else ():
         out[name] = out.get(name, 0.0) + flaw * (float(there[name]) - float(here[name]))
     if logits is not None:

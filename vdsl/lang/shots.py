@@ -172,6 +172,7 @@ def _shot(
         scales=said.scales,
         angles=said.angles,
         lens=own.lens or shared.lens or DEFAULT_LENS,
+        any_lens=not (own.lens or shared.lens),
         ease=own.ease or shared.ease or tuple(sorted(set(words.EASES.values()))),
         duration=own.duration or shared.duration,
         roll=next((r for r in (own.roll, shared.roll, said.lean) if r is not None), 0.0),

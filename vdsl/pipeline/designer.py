@@ -14,7 +14,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from ..cinema.flaws import Measures, flaws
+from ..cinema.flaws import Measures, gravity
 from ..propose.types import CameraProposal
 from .selection import alike, ranked
 
@@ -63,11 +63,12 @@ def appeal(measures: Measures) -> Array:
 
 
 def judged(cameras: Sequence[CameraProposal]) -> Array:
-    """The designer's opinion of proposals [P]: their appeal, and less than 0 for what has a fault."""
+    """The designer's opinion of proposals [P]: their appeal, and less than 0 for what has a fault, the less the
+    graver it is."""
     if not cameras:
         return np.zeros(0)
     measures = {k: np.array([c.measures[k] for c in cameras], float) for k in cameras[0].measures}
-    wrong = np.sum(list(flaws(measures).values()), axis=0)
+    wrong = np.sum(list(gravity(measures).values()), axis=0)
     return np.asarray(np.where(wrong > 0, appeal(measures) - 1.0 - wrong, appeal(measures)))
 
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, NamedTuple, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from ..cinema.flaws import flaws
+from ..cinema.flaws import gravity
 from ..cinema.score import FLAW, PRIOR, geometry_score
 from ..propose.types import CameraProposal
 from .filming import JUDGE_SIZE, SEGMENTS, Seen
@@ -88,7 +88,7 @@ _PRIOR_MIDDLE = 0.75
 
 def prior(measures: Mapping[str, float]) -> float:
     """What the geometry adds to the discriminator's log odds, and its faults take off."""
-    wrong = sum(bool(found) for found in flaws(measures).values())
+    wrong = sum(float(found) for found in gravity(measures).values())
     return PRIOR * (geometry_score(measures) - _PRIOR_MIDDLE) - FLAW * wrong
 
 

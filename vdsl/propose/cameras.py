@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from ..cinema.flaws import flaws
+from ..cinema.flaws import gravity
 from ..cinema.measures import Measured, measure
 from ..cinema.score import geometry_scores
 from ..cinema.sizes import Size, size_of
@@ -41,6 +41,7 @@ _HOPE = 0.6  # of the share that was good so far: what is counted on in the next
 _LEAST, _MOST = 0.05, 12  # the least share counted on, and candidates in one round for each that is wanted
 _RACKED = 3  # times as many where two have to be seen well, at the ends of a rack-focus
 _FEW = 8  # with fewer takes than this, ones that only look less well are let back in
+_HOPELESS = 3  # rounds after which, with as few takes as that, cameras are nudged
 #: Where less than that share of what is wanted has no fault, it is looked for beside the best, so often, so
 #: many at a time for each that is wanted, beside so many of them.
 _FAULTLESS, _SEARCHES, _MORE, _BEST = 0.25, 3, 1.5, 12
@@ -50,15 +51,15 @@ _PLAIN = 1.5  # how many of its kind what has no fault may follow, more than wha
 
 @dataclass(frozen=True, eq=False)
 class _Batch:
-    """Candidates of one story, measured: what was drawn, tracks [P], why each is thrown out, and in how many
-    criteria each has a fault."""
+    """Candidates of one story, measured: what was drawn, tracks [P], why each is thrown out, and how grave all
+    its faults together are."""
 
     sample: Sample
     shooting: Shooting
     measured: Measured
     scores: NDArray[np.float64]
     reason: NDArray[np.int64]
-    faults: NDArray[np.int64]
+    faults: NDArray[np.float64]
 
 
 def propose_cameras(shot: Shot, stories: Sequence[StoryProposal], filming: Filming) -> ProposalGrid:
@@ -71,6 +72,7 @@ def propose_cameras(shot: Shot, stories: Sequence[StoryProposal], filming: Filmi
     considered, wanted = 0, shot.proposals
     few = min(_FEW, wanted)
     hard = 1 if shot.focus_to is None else _RACKED
+    free = shot.any_lens and filming.rig == "cinema"
 
     def consider(sample: Sample) -> None:
         nonlocal considered
@@ -86,14 +88,20 @@ def propose_cameras(shot: Shot, stories: Sequence[StoryProposal], filming: Filmi
         count = int(np.clip((wanted - good) / share, 16, hard * _MOST * wanted))
         rng = generator(filming.seed, shot.drawn_as, f"cameras {number}")
         sample = draw(shot, len(stories), count, rng)
-        if number == _ROUNDS:  # what the grid has no room for may have some beside it
-            sample = nudged(sample, rng)
+        if number == _ROUNDS or (number >= _HOPELESS and good < few):
+            sample = nudged(sample, rng, free)  # what the grid has no room for may have some beside it
         consider(sample)
     if filming.rig == "cinema":  # the paper's stand on its grid
         for number in range(_SEARCHES):
             best = _best(batches)
-            if best is None or _faultless(batches) >= _FAULTLESS * wanted:
+            plain = _faultless(batches)
+            if best is None or plain >= _FAULTLESS * wanted:
                 break
+            if not number and not plain:  # perhaps off the grid, or by other lenses
+                rng = generator(filming.seed, shot.drawn_as, "off the grid")
+                beside = nudged(draw(shot, len(stories), int(_MORE * wanted), rng), rng, free)
+                consider(replace(beside, reach=np.ones(len(beside.reach))))
+                best = _best(batches) or best
             rng = generator(filming.seed, shot.drawn_as, f"beside the best {number}")
             consider(near(best.only(np.resize(np.arange(len(best.story)), int(_MORE * wanted))), rng))
     chosen = _choose(batches, wanted)
@@ -121,7 +129,7 @@ def _faultless(batches: Sequence[_Batch]) -> int:
 
 
 def _best(batches: Sequence[_Batch]) -> Sample | None:
-    """What was drawn for the best candidates there are, fewest faults first, or where none is good for those
+    """What was drawn for the best candidates there are, least faults first, or where none is good for those
     that only look less well; None where there are none of these either."""
     kept = [np.flatnonzero(b.reason < 0) for b in batches]
     if not sum(len(rows) for rows in kept):
@@ -155,7 +163,7 @@ def _consider(
             continue
         shooting, values = tried.shooting.only(tried.kept), tried.measured.values
         reason, drawn = tried.reason[tried.kept], sample.only(rows[shooting.order])
-        faults = np.sum(list(flaws(values).values()), axis=0)
+        faults = np.sum(list(gravity(values).values()), axis=0)
         out.append(_Batch(drawn, shooting, tried.measured, geometry_scores(values), reason, faults))
         rejected.update(REASONS[k] for k in reason[reason >= 0])
     return out
@@ -275,11 +283,12 @@ def _choose(batches: Sequence[_Batch], wanted: int) -> list[tuple[int, int]]:
         return []
     where = [(i, p) for i, b in enumerate(batches) for p in range(len(b.reason))]
     scores = np.concatenate([b.scores for b in batches])
-    plain = np.concatenate([b.faults == 0 for b in batches])
+    faults = np.concatenate([b.faults for b in batches])
+    plain = faults == 0
     pool = np.flatnonzero(reason < 0)
     if len(pool) < min(_FEW, wanted):
         soft = np.flatnonzero(np.concatenate([_soft(b) for b in batches]))
-        soft = soft[np.argsort(-scores[soft], kind="stable")]
+        soft = soft[np.lexsort((-scores[soft], faults[soft]))]
         pool = np.concatenate([pool, soft[: min(_FEW, wanted) - len(pool)]])
     keys = np.stack(
         [

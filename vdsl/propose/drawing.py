@@ -10,7 +10,7 @@ from dataclasses import dataclass, fields, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from ..cinema.subspaces import ALL_AROUND, ASIDE, AZIMUTHS, BEFORE
+from ..cinema.subspaces import ALL_AROUND, ASIDE, AZIMUTHS, BEFORE, FILM
 from ..lang.ir import Shot
 
 
@@ -28,8 +28,8 @@ class Sample:
     lam: λ [N]; key: 0 start or 1 end; on: bool; before: 0, 0.5 or 1
     lam_too: λ [N] of the second of two movements at once; noise: [N], seeds of hand-held shakes
     reach: [N], the distance as a share of the solved one; 1 but where cameras are nudged
-    the rest [N] in 0..1, to be spread over their ranges: lens, mu, turn, travel, lead, jitter (beyond that
-        range where cameras are nudged)
+    the rest [N] in 0..1, to be spread over their ranges: lens, mu, turn, travel, lead, jitter (lens and jitter
+        beyond that range where cameras are nudged)
     """
 
     story: NDArray[np.int64]
@@ -97,16 +97,25 @@ def draw(shot: Shot, stories: int, count: int, rng: np.random.Generator) -> Samp
 #: half way to the next one. Nudged ones go by shares of the solved distance, well within what ``wrong_size``
 #: allows.
 _ASIDE = ALL_AROUND / ASIDE
-_NEARER, _FARTHER = 0.88, 1.2
+_NEARER, _FARTHER = 0.91, 1.1
+#: Lenses, mm, that nudged cameras may have where the line says none: with the shortest a room is shown from
+#: within, with the longest a detail from where there is room; and the shares of those that have such.
+_SHORTEST, _LONGEST = 21.0, 135.0
+_SHORT, _LONG = 0.3, 0.2
 
 
-def nudged(sample: Sample, rng: np.random.Generator) -> Sample:
+def nudged(sample: Sample, rng: np.random.Generator, free: bool) -> Sample:
     """The same candidates for where the usual ones found no room: between the azimuths, from a little
-    nearer or farther, with shorter lenses."""
+    nearer or farther, with shorter lenses; free: also with lenses that films seldom have"""
     count = len(sample.story)
     reach = _NEARER * (_FARTHER / _NEARER) ** rng.random(count)
     aside = 0.5 + _ASIDE * (sample.jitter - 0.5)
-    return replace(sample, jitter=aside, reach=reach, lens=sample.lens**2)
+    lens = sample.lens**2
+    if free:
+        least, most = (math.log(f / FILM[0]) / math.log(FILM[1] / FILM[0]) for f in (_SHORTEST, _LONGEST))
+        kind, far = rng.random(count), rng.random(count)
+        lens = np.where(kind < _SHORT, least * far, np.where(kind > 1 - _LONG, 1.0 + (most - 1.0) * far, lens))
+    return replace(sample, jitter=aside, reach=reach, lens=lens)
 
 
 #: How far a camera that is looked for near another one may be off it (one standard deviation): degrees around
@@ -119,7 +128,8 @@ def near(sample: Sample, rng: np.random.Generator) -> Sample:
     distance, is kept."""
 
     def beside(values: NDArray[np.float64]) -> NDArray[np.float64]:
-        return np.clip(values + rng.normal(0.0, _BESIDE, len(values)), 0.0, 1.0)
+        moved = values + rng.normal(0.0, _BESIDE, len(values))
+        return np.clip(moved, np.minimum(values, 0.0), np.maximum(values, 1.0))
 
     def eased(lam: NDArray[np.float64]) -> NDArray[np.float64]:
         return np.where(rng.random(len(lam)) < _OTHER_EASE, rng.permutation(lam), lam)

@@ -92,7 +92,9 @@ def _shoot_one(
     bias = 1.5 if subject.kind == "place" else 1.0
     bend = np.array([bias * _SHORTER.get(scale, 1.0) * _SHORTER.get(a, 1.0) for a in angles])
     zooms = next((w for w in words if "zoom" in w), words[0])
-    focal = _lens(shot, zooms, rig, sample.lens[i] ** bend, mu if zooms == words[0] else mu_too)
+    within = np.clip(sample.lens[i], 0.0, 1.0)
+    beyond = sample.lens[i] - within  # of nudged cameras
+    focal = _lens(shot, zooms, rig, within**bend + beyond, mu if zooms == words[0] else mu_too)
     relative: Array = np.asarray(sample.azimuth[i] * (2 * np.pi / AZIMUTHS), float)
     if rig == "cinema":
         relative = relative + (2 * sample.jitter[i] - 1) * np.radians(ASIDE)
@@ -107,12 +109,13 @@ def _shoot_one(
             if family(word) in ("push", "pull"):
                 f = replace(f, r=np.where(key == 1, f.r / factor, f.r))
     travel, before, key = _travel(subject, words[0], sample, i, f, film, key)
-    turn, kept = _turn(kind, sample.turn[i]), np.zeros(len(i), bool)
+    above = np.array([a == "overhead" for a in angles])
+    turn, kept = _turn(kind, sample.turn[i], rig, above), np.zeros(len(i), bool)
     draw = Draw(
         f.r, f.theta, f.phi, f.focal, f.offset, sample.lam[i], mu, turn, travel, before, key, on, kept, f.rise
     )
     travel, before, _ = _travel(subject, words[-1], sample, i, f, film, key)
-    turn = _turn(family(words[-1]), 1.0 - sample.turn[i])
+    turn = _turn(family(words[-1]), 1.0 - sample.turn[i], rig, above)
     second = replace(draw, lam=sample.lam_too[i], mu=mu_too, turn=turn, travel=travel, before=before)
     if keeps:
         draw = keep(draw, words[0], words, subject, f.path, asked, film, sample.turn[i])
@@ -249,9 +252,12 @@ def _mu(movement: str, u: Array, rig: str) -> Array:
     return low + (high - low) * u
 
 
-def _turn(kind: str, u: Array) -> Array:
+def _turn(kind: str, u: Array, rig: str, above: NDArray[np.bool_]) -> Array:
+    """Radians turned [P]; of arcs seen from above it takes more to be seen as one. Tilts and pans of ``rig
+    cinema`` are as in the paper where :func:`~vdsl.propose.turns.keep` makes no others of them."""
     low, high = turn_range(kind, cinema=False)
-    return np.radians(low + (high - low) * u)
+    least = np.where(above, low, turn_range(kind, rig == "cinema")[0] if kind == "arc" else low)
+    return np.asarray(np.radians(least + (high - least) * u))
 
 
 def _levels(subject: Subject, angles: tuple[str, ...], at: NDArray[np.int64]) -> Array | None:
@@ -266,7 +272,8 @@ def _levels(subject: Subject, angles: tuple[str, ...], at: NDArray[np.int64]) ->
 
 
 def _lens(shot: Shot, movement: str, rig: str, u: Array, mu: Array) -> Array:
-    """Focal lengths at the first frame, evenly in the logarithm; zooms end inside the films' range too."""
+    """Focal lengths at the first frame, evenly in the logarithm, and beyond the range for u beyond 0..1; zooms
+    end inside the films' range too."""
     low, high = shot.lens
     if rig == "paper":
         low = high = float(np.clip(rig_paper.FOCAL, low, high))

@@ -33,9 +33,10 @@ _STANDS = {"pan", "tilt", "roll", "zoom", "static"}  # movements of a camera tha
 #: small ones.
 _LEAST_WITH, _LEAST_WITH_ZOOM = 14.0, 20.0
 _MOST = 75.0  # degrees of a pan along with one who walks
-#: Degrees a tilt may always turn, though it leaves the knees: of a whole figure there is always something.
+#: Degrees a tilt may always turn, though it leaves the knees: of a whole figure there is always something. No
+#: more from above or below, where bodies are not looked up and down.
 _BODY = 15.0
-_STAYS = 0.5  # metres of somebody who hardly moves
+_STAYS = 1.2  # metres of somebody who hardly moves: a step or two, or lying down
 _LEVEL = np.radians(35.0)  # above or below which bodies are not looked up and down
 
 
@@ -92,10 +93,10 @@ def keep(
         kept = (u < _KEEPING) & (turn > np.radians(LEAST_TURN)) & (turn < np.radians(_MOST))
     elif kind == "pan":
         turn, kept = _passing(words, subject, theta, draw.focal, film, u)
-    elif kind == "tilt" and subject.kind == "person" and subject.travel() < _STAYS:
-        most = _down_the_body(draw, subject, path, SIGN[word])
+    elif kind == "tilt" and subject.kind == "person":
+        level = np.abs(theta - np.pi / 2) < _LEVEL
+        most = np.where(level, _down_the_body(draw, subject, path, SIGN[word]), np.radians(_BODY))
         turn, kept = _spread(words, most, u)
-        kept &= np.abs(theta - np.pi / 2) < _LEVEL
     else:
         return draw
     low, high = np.radians(turn_range(kind, cinema=False))

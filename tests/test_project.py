@@ -64,14 +64,28 @@ def test_git_ignores_builds_and_keeps_the_lock(tmp_path: Path) -> None:
 
 
 def test_nothing_is_written_over(tmp_path: Path) -> None:
-    (tmp_path / "rain").mkdir()
-    (tmp_path / "rain" / "mine.txt").write_text("mine")
-    done = run(app, ["new", str(tmp_path / "rain")])
+    place = tmp_path / "rain"
+    place.mkdir()
+    (place / "README.md").write_text("mine")
+    done = run(app, ["new", str(place)])
     assert done.exit_code == 2
-    assert "there already" in done.output
-    assert [p.name for p in (tmp_path / "rain").iterdir()] == ["mine.txt"]
+    assert "holds README.md already" in done.output
+    assert [p.name for p in place.iterdir()] == ["README.md"]
+    (tmp_path / "snow").write_text("no folder")
+    done = run(app, ["new", str(tmp_path / "snow")])
+    assert done.exit_code == 2
+    assert "no folder" in done.output
     for name in ("1st", "a b", "..", "-x"):
         assert run(app, ["new", "--", str(tmp_path / name)]).exit_code == 2, name
+
+
+def test_a_folder_that_has_none_of_a_projects_files_becomes_one(tmp_path: Path) -> None:
+    place = tmp_path / "rain"
+    (place / ".git").mkdir(parents=True)
+    (place / "notes.txt").write_text("mine")
+    assert run(app, ["new", str(place)]).exit_code == 0
+    assert (place / "rain.vds").exists()
+    assert (place / "notes.txt").read_text() == "mine"
 
 
 @pytest.mark.parametrize(

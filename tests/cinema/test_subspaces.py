@@ -53,3 +53,20 @@ def test_two_movements_at_once_have_both_ones_variables() -> None:
     space = {v.symbol: str(v) for v in subspace("push+pan-left", "full", "eye-level", LENS, EASE).free}
     assert {"μ", "turn", "ending", "λ", "λ′"} <= set(space)
     assert space["turn"] == "turn ∈ [12, 60] °"
+
+
+def test_what_two_people_decide_is_not_said_to_be_free() -> None:
+    for view in ("ots", "pov"):
+        space = subspace("push", "medium", "eye-level", LENS, EASE, view=view)
+        assert not {"φ", "Δφ", "f", "lead"} & {v.symbol for v in space.free}
+        assert dict(space.fixed)["r, φ, f"] == "by where the two stand"
+
+
+def test_arcs_go_less_far_round_than_the_papers_but_for_those_from_overhead() -> None:
+    for angle, rig, least in (("eye-level", "cinema", 60), ("overhead", "cinema", 90), ("eye-level", "paper", 90)):
+        space = subspace("arc-left", "full", angle, LENS, EASE, rig)
+        assert f"turn ∈ [{least}, 120] °" in [str(v) for v in space.free]
+        filming = Filming(world(), {"anna": BODY}, 24.0, 0, rig=rig)
+        cameras = propose_cameras(shot("arc-left", "full", angle), [still_story(BODY)], filming).cameras
+        turns = [abs(np.degrees(float(c.params["turn"]))) for c in cameras]
+        assert least - 1e-9 <= min(turns) < least + 8

@@ -126,3 +126,10 @@ def test_camera_words_after_the_parenthesis_are_shown_where_they_belong(behind: 
         check_source(Source("words.vds", f"{STORY.format('static medium').rstrip()} {behind}\n"), Report())
     (found,) = told.value.report.diagnostics
     assert (found.code, shown in str(found.help)) == ("VDS050", True)
+
+
+def test_a_view_that_the_paper_has_not_is_one_error_with_its_name() -> None:
+    text = STORY.replace("character anna", "rig paper\ncharacter anna").format("static medium ots ben")
+    with pytest.raises(ScriptError) as caught:
+        check_source(Source("words.vds", text), Report())
+    assert [d.code for d in caught.value.report.errors] == ["VDS046"]

@@ -388,3 +388,18 @@ def test_codes_are_well_formed() -> None:
         assert row.why.endswith((".", ")")) or "\n" in row.why
     assert codes(HEAD + "(anna wave)\n") == []
     assert isinstance(Report().diagnostics, tuple)
+
+
+def test_codes_name_all_that_is_known() -> None:
+    from vdsl.lang import options
+    from vdsl.lang.definitions.looks import FEATURES
+    from vdsl.lang.ir import FURTHER_MOVEMENTS, MOVEMENTS
+
+    for name in FEATURES:
+        assert f" {name}" in CODES["VDS160"].why, name
+    for movement in (*MOVEMENTS, *FURTHER_MOVEMENTS):
+        family = movement.removesuffix("-in").rsplit("-left")[0].rsplit("-right")[0]
+        family = family.removesuffix("-out").removesuffix("-up").removesuffix("-down")
+        assert family in CODES["VDS040"].why, movement
+    for option in {*options._READERS, "focus", "feeling"} - {"duration"}:
+        assert option in CODES["VDS050"].why, option

@@ -103,11 +103,8 @@ class Style:
     @property
     def varies(self) -> tuple[str, ...]:
         """Its free variables with their grids: ``μ ∈ [0.5, 0.8]``."""
-        free = subspace(self.movement, self.size, self.angle or "eye-level", FILM, (0.1, 1.0, 10.0)).free
-        if self.view.startswith("pov"):
-            free = tuple(v for v in free if v.symbol not in ("φ", "Δφ", "lead"))
-        elif self.view.startswith("ots"):
-            free = tuple(v for v in free if v.symbol not in ("φ", "Δφ", "f", "lead"))
+        angle, view = self.angle or "eye-level", self.view.partition(" ")[0]
+        free = subspace(self.movement, self.size, angle, FILM, (0.1, 1.0, 10.0), view=view).free
         return tuple(str(variable) for variable in free)
 
     @property

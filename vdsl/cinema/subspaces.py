@@ -85,10 +85,10 @@ def mu_range(movement: str, cinema: bool = True) -> tuple[float, float]:
     return (_SEEN, OUTWARDS[1]) if cinema else OUTWARDS
 
 
-def turn_range(kind: str, cinema: bool = True) -> tuple[float, float]:
-    """Degrees that a family turns."""
+def turn_range(kind: str, cinema: bool = True, above: bool = False) -> tuple[float, float]:
+    """Degrees that a family turns. above: seen from overhead, where less of an arc is not seen as one"""
     low, high = TURNS.get(kind, TURNS["pan"])
-    least = {"tilt": LEAST_TURN, "pan": LEAST_TURN, "arc": _LEAST_ARC} if cinema else {}
+    least = {"tilt": LEAST_TURN, "pan": LEAST_TURN, "arc": low if above else _LEAST_ARC} if cinema else {}
     return least.get(kind, low), high
 
 
@@ -99,10 +99,12 @@ def subspace(
     lens: tuple[float, float],
     lam: tuple[float, ...],
     rig: str = "cinema",
+    view: str = "",
 ) -> Subspace:
     """Of a movement, or of two at once (``push+pan-left``).
 
-    lens: the line's range in mm; lam: its choices of λ
+    lens: the line's range in mm; lam: its choices of λ; view: over a shoulder and through eyes, where the
+    camera stands and with which lens follows from the two people
     """
     parts, cinema = of_camera(movement).split("+"), rig == "cinema"
     fixed = [
@@ -111,16 +113,20 @@ def subspace(
         ("θ", f"{angle}, raised where it would be under the floor"),
         ("roll", "as the line says"),
     ]
+    by_people = view in ("ots", "pov")
+    if by_people:
+        fixed[0:2] = [("p", "whom one sees"), ("r, φ, f", "by where the two stand")]
     degrees = tuple(360.0 * k / AZIMUTHS for k in range(AZIMUTHS))
-    free = [Variable("φ", "azimuth off the subject's heading", "°", grid=degrees)]
-    if cinema:
+    around = Variable("φ", "azimuth off the subject's heading", "°", grid=degrees)
+    free: list[Variable] = [] if by_people else [around]
+    if cinema and not by_people:
         aside = ALL_AROUND if RACK in movement.split("+") else ASIDE
         free += [
             Variable("Δφ", "off that azimuth", "°", -aside, aside),
             Variable("f", "focal length at the first frame", "mm", *lens, _only(lens)),
             Variable("lead", "off the middle, towards where nobody looks", "of the width", 0.0, LEAD),
         ]
-    else:
+    if not cinema:
         fixed.append(("f", "50 mm, or the nearest the line allows"))
     if of_camera(movement) not in ("static", "handheld"):
         free.append(Variable("λ", "easing", "", grid=lam))
@@ -129,7 +135,7 @@ def subspace(
     if RACK in movement.split("+"):
         fixed.append(("s", "from the eyes or middle of one to those of the other"))
         free.append(Variable("λ″", "easing of the focus", "", grid=lam))
-    own = [v for part in parts for v in _own(part, family(part), cinema)]
+    own = [v for part in parts for v in _own(part, family(part), cinema, angle == "overhead")]
     return Subspace(tuple(fixed), (*free, *dict.fromkeys(own)))
 
 
@@ -138,7 +144,7 @@ def _only(lens: tuple[float, float]) -> tuple[float, ...]:
     return lens[:1] if lens[0] == lens[1] else ()
 
 
-def _own(movement: str, kind: str, cinema: bool) -> list[Variable]:
+def _own(movement: str, kind: str, cinema: bool, above: bool) -> list[Variable]:
     """The variables a movement has besides those that all have."""
     ends = Variable("k", "frame the framing is of", "", grid=("start", "end"))
     out = [ends] if kind == "static" or (cinema and kind not in ("zoom", "follow", "tilt", "pan")) else []
@@ -147,7 +153,7 @@ def _own(movement: str, kind: str, cinema: bool) -> list[Variable]:
             Variable("μ", "distance, or width of the frame, at the end", "", *mu_range(movement, cinema))
         )
     if kind in TURNS:
-        out.append(Variable("turn", "angle turned", "°", *turn_range(kind, cinema)))
+        out.append(Variable("turn", "angle turned", "°", *turn_range(kind, cinema, above)))
     if kind in ("tilt", "pan"):
         out.append(Variable("ending", "on the subject, or off it", "", grid=("on", "off")))
     if kind in TRAVELS:

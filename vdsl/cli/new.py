@@ -86,8 +86,6 @@ def new(
     place = Path(name)
     if not _NAME.fullmatch(place.name):
         stop(f"{name!r} is no name for a project: letters, digits, - and _, a letter first", USAGE)
-    if place.exists():
-        stop(f"{place} is there already; nothing was changed", USAGE)
     title = place.name.replace("-", " ").replace("_", " ").capitalize()
     words = {"name": place.name, "title": title, "file": f"{place.name}.vds"}
     files = {
@@ -97,8 +95,13 @@ def new(
         ".gitattributes": _ATTRIBUTES,
         "README.md": _README,
     }
+    there = [file for file in files if (place / file).exists()]
+    if there:
+        stop(f"{place} holds {', '.join(there)} already; nothing was changed", USAGE)
+    if place.exists() and not place.is_dir():
+        stop(f"{place} is there already and is no folder; nothing was changed", USAGE)
     try:
-        place.mkdir(parents=True)
+        place.mkdir(parents=True, exist_ok=True)
         for file, text in files.items():
             (place / file).write_text(text.format(**words), encoding="utf-8")
     except OSError as error:

@@ -101,7 +101,7 @@ def _show_space(checked: Checked, wanted: str, as_json: bool) -> None:
     board = checked.storyboard
     shot = next(s for line in board.lines for s in line.shots if s.id == wanted)
     styles = [(m, s, a) for m in shot.movements for s in shot.scales for a in shot.angles]
-    spaces = [(" ".join(x), subspace(*x, shot.lens, shot.ease, board.rig)) for x in styles]
+    spaces = [(" ".join(x), subspace(*x, shot.lens, shot.ease, board.rig, shot.view)) for x in styles]
     if as_json:
         entries = [
             {

@@ -51,7 +51,7 @@ def read_camera(node: ast.CameraNode | None, rig: str, report: Report) -> Camera
             stars.append(term)
             continue
         _take(term, found, rig, report)
-        if found.get("view", ("",))[0] in ("ots", "pov") and whose is None and _is_view(term):
+        if whose is None and _is_somebodys(term):
             whose = _owner(terms)
     free = [slot for slot in SLOTS if slot not in found]
     if len(stars) > len(free):
@@ -72,9 +72,10 @@ def read_camera(node: ast.CameraNode | None, rig: str, report: Report) -> Camera
     )
 
 
-def _is_view(term: _Term) -> bool:
+def _is_somebodys(term: _Term) -> bool:
+    """Whether a term is a view that is somebody's, whose name may follow."""
     meaning = None if isinstance(term, ast.Star) else words.meaning(term[0][0])
-    return meaning is not None and meaning.slot == "view"
+    return meaning is not None and meaning.slot == "view" and meaning.words[0] in ("ots", "pov")
 
 
 def _owner(terms: list[_Term]) -> ast.Name | None:

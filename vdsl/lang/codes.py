@@ -253,7 +253,7 @@ CODES: dict[str, Code] = {
     "VDS040": Code(
         "unknown camera word",
         "A camera line has a movement (static, follow, push, pull, zoom, tilt, pan, dolly, pedestal, arc, "
-        "crane, roll, dolly-zoom, handheld, whip-pan, or two joined as in push+pan), a scale "
+        "crane, roll, dolly-zoom, handheld, whip-pan, rack-focus, or two joined as in push+pan), a scale "
         "(extreme-close-up, big-close-up, close-up, medium-close-up, medium, cowboy, medium-long, full, wide, "
         "extreme-wide) and an angle (eye-level, high-angle, low-angle, overhead, worms-eye, shoulder-level, "
         "hip-level, knee-level, ground-level). Each may be `*`, a choice like push|static, or left out.",
@@ -320,7 +320,7 @@ CODES: dict[str, Code] = {
         "unknown option",
         "Options after a line are separated by commas: lens 50mm, ease slow-in, 4s, roll 12deg, aperture 2.8, "
         "focus NAME, "
-        'say "…", note "…", proposals 80, takes 5, speed brisk, style ink.',
+        'name NAME, feeling glad, say "…", note "…", proposals 80, takes 5, speed brisk, style ink.',
         "(anna walk) lense 50mm",
         "(anna walk) lens 50mm",
     ),
@@ -569,7 +569,7 @@ CODES: dict[str, Code] = {
     ),
     "VDS115": Code(
         "unknown prop",
-        "Props are those of the library and those defined in the script. docs/sets.md lists the library's.",
+        "Props are those of the library and those defined in the script. docs/library/props.md lists the library's.",
         "place lamp = flor_lamp, at (1, 1)m",
         "place lamp = floor_lamp, at (1, 1)m",
     ),
@@ -618,7 +618,8 @@ CODES: dict[str, Code] = {
     "VDS160": Code(
         "unknown feature of a person",
         "A cast definition sets features: height, build, body, age, skin, eyes, hair, hair-color, facial-hair, "
-        "glasses, top, top-kind, shirt, bottom, bottom-kind and shoes. Nothing else is known of people.",
+        "glasses, hat, hat-color, neck, top, top-kind, shirt, over, bottom, bottom-kind, belt, back, gloves, badge, "
+        "accent, shoes and shoes-kind. Nothing else is known of people.",
     ),
     "VDS161": Code(
         "a feature of the wrong size or kind",

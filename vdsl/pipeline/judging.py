@@ -84,6 +84,9 @@ class GeometryJudge:
 
 
 _PRIOR_MIDDLE = 0.75
+#: What log odds are divided by before they become a score (the temperature of a softmax): a fault alone is worth
+#: 14, and as they are nearly all scores would read 0.00 or 1.00.
+_TEMPERATURE = 6.0
 
 
 def prior(measures: Mapping[str, float]) -> float:
@@ -95,8 +98,8 @@ def prior(measures: Mapping[str, float]) -> float:
 class DiscriminatorJudge:
     """The shot ranking discriminator (p_b of the paper's section 3.3), with measured geometry as prior.
 
-    The score is the probability whose log odds are the discriminator's plus :func:`prior`. taste: a file of
-    what a writer's choices taught, which counts with the discriminator's.
+    The score is the probability whose log odds are the discriminator's plus :func:`prior`, tempered. taste: a
+    file of what a writer's choices taught, which counts with the discriminator's.
     Raises :class:`ranker.RankerError` if the weights or the taste are missing or unreadable.
     """
 
@@ -136,8 +139,8 @@ class DiscriminatorJudge:
         if self._taste is not None:
             logit += self._taste.adds(seen.feature)
         priors = np.array([prior(c.measures) for c in cameras])
-        return np.asarray(1.0 / (1.0 + np.exp(-(logit + priors))))
+        return np.asarray(1.0 / (1.0 + np.exp(-(logit + priors) / _TEMPERATURE)))
 
     def logit(self, camera: CameraProposal, score: float) -> float | None:
         score = min(max(score, 1e-300), 1.0 - 1e-15)
-        return math.log(score / (1.0 - score)) - prior(camera.measures)
+        return _TEMPERATURE * math.log(score / (1.0 - score)) - prior(camera.measures)

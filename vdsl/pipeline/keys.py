@@ -35,7 +35,7 @@ _CODE = (
 #: Of the rest only what judges, films and encodes.
 _FILES = ("pipeline/acts", "pipeline/chosen", "pipeline/edit", "pipeline/filming", "pipeline/glance",
           "pipeline/judging", "pipeline/packing", "pipeline/selection", "pipeline/shooting",
-          "pipeline/shutter", "pipeline/takes", "pipeline/witness", "emit/burnin", "emit/lettering",
+          "pipeline/shutter", "pipeline/witness", "emit/burnin", "emit/lettering",
           "emit/overlay", "emit/plan_ground", "emit/typefaces", "emit/types", "emit/video",
           "emit/words")  # fmt: skip
 _ENDINGS = (".py", ".lark", ".vds")

@@ -255,8 +255,9 @@ def _mu(movement: str, u: Array, rig: str) -> Array:
 def _turn(kind: str, u: Array, rig: str, above: NDArray[np.bool_]) -> Array:
     """Radians turned [P]; of arcs seen from above it takes more to be seen as one. Tilts and pans of ``rig
     cinema`` are as in the paper where :func:`~vdsl.propose.turns.keep` makes no others of them."""
-    low, high = turn_range(kind, cinema=False)
-    least = np.where(above, low, turn_range(kind, rig == "cinema")[0] if kind == "arc" else low)
+    high = turn_range(kind, False)[1]
+    cinema = rig == "cinema" and kind == "arc"
+    least = np.where(above, turn_range(kind, cinema, True)[0], turn_range(kind, cinema)[0])
     return np.asarray(np.radians(least + (high - least) * u))
 
 

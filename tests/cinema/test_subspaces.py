@@ -63,7 +63,11 @@ def test_what_two_people_decide_is_not_said_to_be_free() -> None:
 
 
 def test_arcs_go_less_far_round_than_the_papers_but_for_those_from_overhead() -> None:
-    for angle, rig, least in (("eye-level", "cinema", 60), ("overhead", "cinema", 90), ("eye-level", "paper", 90)):
+    for angle, rig, least in (
+        ("eye-level", "cinema", 60),
+        ("overhead", "cinema", 90),
+        ("eye-level", "paper", 90),
+    ):
         space = subspace("arc-left", "full", angle, LENS, EASE, rig)
         assert f"turn ∈ [{least}, 120] °" in [str(v) for v in space.free]
         filming = Filming(world(), {"anna": BODY}, 24.0, 0, rig=rig)

@@ -43,7 +43,9 @@ def test_a_fault_that_only_one_of_two_takes_has_counts_by_itself() -> None:
     plain, strict = (advantages(BEST, other, (0.0, 0.0), 10.0, flaw) for flaw in (0.0, 3.0))
     more = {name: strict[name] - plain.get(name, 0.0) for name in strict}
     assert {name for name, gain in more.items() if gain} == {"lead_room", "visibility", "framing"}
-    assert [more[name] for name in ("lead_room", "visibility", "framing")] == pytest.approx([3.5, 10 / 3, 5.0])
+    assert [more[name] for name in ("lead_room", "visibility", "framing")] == pytest.approx(
+        [3.5, 10 / 3, 5.0]
+    )
     back = advantages(other, BEST, (0.0, 0.0), 10.0, 3.0)
     assert back["framing"] == pytest.approx(-5.0)
     assert compared("framing", BEST, other, True, "take 2") == "better framed than take 2"

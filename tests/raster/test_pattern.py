@@ -26,7 +26,7 @@ def sampler() -> Any:
     start("cpu")
     import taichi as ti
 
-    from runtime.raster.kernels.pattern import GRAINED, Alone, broad_pattern, noise_lattice, pattern
+    from runtime.raster.kernels.pattern import Alone, broad_pattern, noise_lattice, pattern
 
     lattice = noise_lattice()
 
@@ -43,9 +43,7 @@ def sampler() -> Any:
             p = ti.Vector([points[i, 0], points[i, 1], points[i, 2]])
             n = ti.Vector([0.0, -1.0, 0.0]) if upright == 1 else ti.Vector([0.0, 0.0, 1.0])
             out[i] = broad_pattern(material, p, n, lattice)
-            for k in ti.static(GRAINED):
-                if material == k:
-                    out[i] = pattern(k, p.x, p.y, p.z, n, blur, Alone, (lattice,))
+            out[i] *= pattern(material, p.x, p.y, p.z, n, blur, Alone, (lattice,))
 
     return lambda material, upright, blur, points, out: fill(material, upright, blur, lattice, points, out)
 

@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 
 Measures = Mapping[str, NDArray[np.float64] | float]
 
-#: What is a fault: (criterion, measure, the least or the most of it that will do, where it could not be worse).
+#: What is a fault: (criterion, measure, the least or the most of it that will do, and what of it could not be
+#: worse).
 LEAST = (
     ("visibility", "visibility", 0.95, 0.3),
     ("visibility", "head_visible", 0.85, 0.0),
@@ -61,8 +62,8 @@ def flaws_by_measure(measures: Measures) -> dict[str, NDArray[np.bool_]]:
 
 
 def gravity(measures: Measures) -> dict[str, NDArray[np.float64]]:
-    """By criterion, how grave the fault of takes [P] in it is: 0 for none, 1 for one that is hardly one, and up
-    to 2 for what could not be worse. Of several faults in a criterion the gravest counts."""
+    """By criterion, how grave the fault of takes [P] in it is: 0 for none, 1 for one that is hardly one, and
+    up to 2 for what could not be worse. Of several faults in a criterion the gravest counts."""
     found = flaws_by_measure(measures)
     out = {name: np.zeros(np.shape(measures["visibility"])) for name in CRITERIA}
     for criterion, name, bound, worst in (*LEAST, *MOST):

@@ -36,8 +36,8 @@ PENALTIES = {
 #: How much a full point of the geometry score moves the odds of a take, in logits: as a prior. By this much
 #: designer's picks that are hidden among proposals come higher than by the pictures or the geometry alone.
 PRIOR = 30.0
-#: And by how much a fault in a criterion lowers it, times its gravity (:func:`vdsl.cinema.flaws.gravity`): what is
-#: plainly amiss is not made up for by what else is good.
+#: And by how much a fault in a criterion lowers it, times its gravity (:func:`vdsl.cinema.flaws.gravity`):
+#: what is plainly amiss is not made up for by what else is good.
 FLAW = 14.0
 
 

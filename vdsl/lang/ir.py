@@ -116,7 +116,8 @@ class Shot:
 
     id: stable when lines are inserted or removed elsewhere
     movements, scales, angles: what may be proposed, canonical words; one entry where it was said
-    lens: focal length range in mm, any_lens: whether the line says none; ease: λ choices; duration: seconds or None for the action's own
+    lens: focal length range in mm, any_lens: whether the line says none; ease: λ choices
+    duration: seconds or None for the action's own
     focus: the character or object the camera is about; None only where nobody is in the scene
     speed: action speed factor (1 as recorded)
     feelings: what shows on faces, as (character, word of :data:`runtime.motion.feelings.FEELINGS`)

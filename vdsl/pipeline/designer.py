@@ -63,8 +63,8 @@ def appeal(measures: Measures) -> Array:
 
 
 def judged(cameras: Sequence[CameraProposal]) -> Array:
-    """The designer's opinion of proposals [P]: their appeal, and less than 0 for what has a fault, the less the
-    graver it is."""
+    """The designer's opinion of proposals [P]: their appeal, and less than 0 for what has a fault, the less
+    the graver it is."""
     if not cameras:
         return np.zeros(0)
     measures = {k: np.array([c.measures[k] for c in cameras], float) for k in cameras[0].measures}

@@ -84,8 +84,8 @@ class GeometryJudge:
 
 
 _PRIOR_MIDDLE = 0.75
-#: What log odds are divided by before they become a score (the temperature of a softmax): a fault alone is worth
-#: 14, and as they are nearly all scores would read 0.00 or 1.00.
+#: What log odds are divided by before they become a score (the temperature of a softmax): a fault alone is
+#: worth 14, and as they are nearly all scores would read 0.00 or 1.00.
 _TEMPERATURE = 6.0
 
 
@@ -98,8 +98,8 @@ def prior(measures: Mapping[str, float]) -> float:
 class DiscriminatorJudge:
     """The shot ranking discriminator (p_b of the paper's section 3.3), with measured geometry as prior.
 
-    The score is the probability whose log odds are the discriminator's plus :func:`prior`, tempered. taste: a
-    file of what a writer's choices taught, which counts with the discriminator's.
+    The score is the probability whose log odds are the discriminator's plus :func:`prior`, tempered. taste:
+    a file of what a writer's choices taught, which counts with the discriminator's.
     Raises :class:`ranker.RankerError` if the weights or the taste are missing or unreadable.
     """
 

@@ -51,8 +51,8 @@ _PLAIN = 1.5  # how many of its kind what has no fault may follow, more than wha
 
 @dataclass(frozen=True, eq=False)
 class _Batch:
-    """Candidates of one story, measured: what was drawn, tracks [P], why each is thrown out, and how grave all
-    its faults together are."""
+    """Candidates of one story, measured: what was drawn, tracks [P], why each is thrown out, and how grave
+    all its faults together are."""
 
     sample: Sample
     shooting: Shooting

@@ -28,8 +28,8 @@ class Sample:
     lam: λ [N]; key: 0 start or 1 end; on: bool; before: 0, 0.5 or 1
     lam_too: λ [N] of the second of two movements at once; noise: [N], seeds of hand-held shakes
     reach: [N], the distance as a share of the solved one; 1 but where cameras are nudged
-    the rest [N] in 0..1, to be spread over their ranges: lens, mu, turn, travel, lead, jitter (lens and jitter
-        beyond that range where cameras are nudged)
+    the rest [N] in 0..1, to be spread over their ranges: lens, mu, turn, travel, lead, jitter (lens and
+        jitter beyond that range where cameras are nudged)
     """
 
     story: NDArray[np.int64]
@@ -114,7 +114,9 @@ def nudged(sample: Sample, rng: np.random.Generator, free: bool) -> Sample:
     if free:
         least, most = (math.log(f / FILM[0]) / math.log(FILM[1] / FILM[0]) for f in (_SHORTEST, _LONGEST))
         kind, far = rng.random(count), rng.random(count)
-        lens = np.where(kind < _SHORT, least * far, np.where(kind > 1 - _LONG, 1.0 + (most - 1.0) * far, lens))
+        lens = np.where(
+            kind < _SHORT, least * far, np.where(kind > 1 - _LONG, 1.0 + (most - 1.0) * far, lens)
+        )
     return replace(sample, jitter=aside, reach=reach, lens=lens)
 
 

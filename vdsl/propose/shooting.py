@@ -273,8 +273,8 @@ def _levels(subject: Subject, angles: tuple[str, ...], at: NDArray[np.int64]) ->
 
 
 def _lens(shot: Shot, movement: str, rig: str, u: Array, mu: Array) -> Array:
-    """Focal lengths at the first frame, evenly in the logarithm, and beyond the range for u beyond 0..1; zooms
-    end inside the films' range too."""
+    """Focal lengths at the first frame, evenly in the logarithm, and beyond the range for u beyond 0..1;
+    zooms end inside the films' range too."""
     low, high = shot.lens
     if rig == "paper":
         low = high = float(np.clip(rig_paper.FOCAL, low, high))

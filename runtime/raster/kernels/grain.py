@@ -172,16 +172,15 @@ def grain_rows(
                             stop += 1
                         if 0 <= t < static_faces:
                             material = ti.bit_cast(sheet[2 * t * SHEET + 11], ti.i32) & 255
-                            plane, near, turn, blur = surface(sheet, t, eye, first, step, x, view[n, 13])
-                            for k in ti.static(GRAINED):
-                                if material == k:
-                                    for j in range(x, stop):
-                                        along = ti.cast(j, ti.f32)
-                                        z = 1.0 / (near + along * turn)
-                                        p = eye + (first + step * along) * z
-                                        factor = pattern(k, p.x, p.y, p.z, plane, blur, Alone, (lattice,))
-                                        i = line * width + j
-                                        picture[i] = scaled(picture[i], 1.0 + (factor - 1.0) * SLOPE)
+                            if (SOME >> material) & 1 == 1:
+                                plane, near, turn, blur = surface(sheet, t, eye, first, step, x, view[n, 13])
+                                for j in range(x, stop):
+                                    along = ti.cast(j, ti.f32)
+                                    z = 1.0 / (near + along * turn)
+                                    p = eye + (first + step * along) * z
+                                    factor = pattern(material, p.x, p.y, p.z, plane, blur, Alone, (lattice,))
+                                    i = line * width + j
+                                    picture[i] = scaled(picture[i], 1.0 + (factor - 1.0) * SLOPE)
                         x = stop
 
 
@@ -250,19 +249,16 @@ def grain_runs(
                             px = eye.x + (first.x + step.x * along) * z
                             py = eye.y + (first.y + step.y * along) * z
                             pz = eye.z + (first.z + step.z * along) * z
-                            factor = along * 0.0
-                            for k in ti.static(GRAINED):
-                                if material == k:
-                                    factor = pattern(
-                                        k,
-                                        px,
-                                        py,
-                                        pz,
-                                        plane,
-                                        blur,
-                                        Along,
-                                        (lattice, number, wide, word, at, x, last),
-                                    )
+                            factor = pattern(
+                                material,
+                                px,
+                                py,
+                                pz,
+                                plane,
+                                blur,
+                                Along,
+                                (lattice, number, wide, word, at, x, last),
+                            )
                             wide[at] = (1.0 + (factor - 1.0) * SLOPE) * 256.0 + EVEN
                             old = picture[line * runs + run]
                             new = scaled_all(old, word[at] - ti.u32(EVEN_BITS))

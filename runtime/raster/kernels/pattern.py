@@ -6,7 +6,10 @@ pixel on the surface and fade out before they could shimmer. Indices are those o
 pixels (:func:`broad_pattern`), 7 and 8 are no surfaces to light at all.
 
 The others go over the shaded picture (:mod:`.grain`), in its sRGB bytes: a pattern is so faint that the
-film's curve is straight along it.
+film's curve is straight along it. What a material is made of besides arithmetic, numbers by chance and
+noise, is looked up first, in loops over where (:func:`tone_at`, :func:`noise_at`), then put together
+(:func:`finish`): a look-up of sixteen places is long, Taichi puts a copy of it wherever it is called from,
+and a copy for each place of each material took a fifth of the time of a start.
 """
 
 # mypy: ignore-errors
@@ -20,6 +23,22 @@ from .geometry import bounded, greater, lesser, vec3
 
 SIDE = 128  # of the lattice of the noise
 GRAINED = (1, 2, 3, 4, 5, 6, 9, 12, 13, 14, 15, 16, 17, 18, 19, 20, 21, 22)  # drawn pixel by pixel
+#: How many numbers by chance they take, and how often noise is looked up for them.
+TONES = ((1, 2), (2, 1), (3, 1), (14, 2), (20, 2), (21, 1), (22, 1))
+NOISES = (
+    (1, 1),
+    (4, 2),
+    (5, 2),
+    (9, 2),
+    (12, 4),
+    (13, 3),
+    (14, 1),
+    (15, 1),
+    (16, 2),
+    (17, 2),
+    (18, 4),
+    (19, 3),
+)
 
 
 def noise_lattice() -> NDArray[np.float32]:
@@ -53,20 +72,20 @@ def value_noise(x, y, lattice: ti.template()):
 
 
 @ti.func
-def noise_at(x, y, lattice: ti.template()):
+def noise_alone(x, y, lattice: ti.template()):
     return value_noise(x, y, lattice)
 
 
 @ti.func
-def hashed_at(a, b, lattice: ti.template()):
+def hashed_alone(a, b, lattice: ti.template()):
     return hashed(ti.cast(a, ti.i32), ti.cast(b, ti.i32))
 
 
 class Alone:
     """Patterns at one place at a time. ``hashed`` takes whole numbers as float32."""
 
-    noise = staticmethod(noise_at)
-    hashed = staticmethod(hashed_at)
+    noise = staticmethod(noise_alone)
+    hashed = staticmethod(hashed_alone)
 
 
 @ti.func
@@ -99,21 +118,11 @@ def contour(h, level, width, blur):
 
 
 @ti.func
-def bonded(u, v, length, height, gap, blur, varied, dark, kind: ti.template(), source: ti.template()):
-    """Courses of blocks ``length`` by ``height`` metres, each course shifted: tones, and darker joints."""
-    row = v / height
-    line = ti.floor(row)
-    along = u / length + kind.hashed(line, 11.0, *source)
-    tone = kind.hashed(line, ti.floor(along), *source)
-    seam = greater(joint(row, gap / height, blur / height), joint(along, gap / length, blur / length))
-    return (1.0 + (tone - 0.5) * varied * fade(blur, height)) * (1.0 - dark * seam)
+def pattern(material, px, py, pz, n, blur, kind: ti.template(), source: ti.template()):
+    """Factor of a material at world places, of a face with normal ``n``; 1 if it is none of GRAINED.
 
-
-@ti.func
-def pattern(material: ti.template(), px, py, pz, n, blur, kind: ti.template(), source: ti.template()):
-    """Factor of one of GRAINED at world places, of a face with normal ``n``; blur: a pixel's width, metres.
-
-    kind: how noise is looked up, at one place (:class:`Alone`) or at sixteen; source: what from
+    blur: a pixel's width, metres; kind: how things are looked up, at one place (:class:`Alone`) or at
+    sixteen; source: what from
     """
     u, v = px, py
     upright = ti.abs(n.z) < 0.7
@@ -121,23 +130,187 @@ def pattern(material: ti.template(), px, py, pz, n, blur, kind: ti.template(), s
         v = pz
         if ti.abs(n.x) > ti.abs(n.y):
             u = py
+    nothing = u * 0.0
+    first, second = nothing, nothing  # numbers by chance
+    tones = 0
+    for k, count in ti.static(TONES):
+        if material == k:
+            tones = count
+    if material == 1 and upright:
+        tones = 0
+    for slot in range(tones):
+        a, b = u, v
+        for k, _ in ti.static(TONES):
+            if material == k:
+                a, b = tone_at(k, slot, u, v, upright, first)
+        found = kind.hashed(a, b, *source)
+        if slot == 0:
+            first = found
+        else:
+            second = found
+    noise, noise_1, noise_2, noise_3 = nothing, nothing, nothing, nothing
+    noises = 0
+    for k, count in ti.static(NOISES):
+        if material == k:
+            noises = count
+    for slot in range(noises):
+        x, y, seen = u, v, 1.0
+        for k, _ in ti.static(NOISES):
+            if material == k:
+                x, y, seen = noise_at(k, slot, px, py, pz, u, v, upright, blur, noise)
+        if seen > 0.0:
+            found = kind.noise(x, y, *source)
+            if slot == 0:
+                noise = found
+            elif slot == 1:
+                noise_1 = found
+            elif slot == 2:
+                noise_2 = found
+            else:
+                noise_3 = found
+    out = nothing + 1.0
+    for k in ti.static(GRAINED):
+        if material == k:
+            out = finish(
+                k, px, py, pz, u, v, upright, blur, first, second, (noise, noise_1, noise_2, noise_3)
+            )
+    return out
+
+
+@ti.func
+def tone_at(material: ti.template(), slot, u, v, upright, first):
+    """Of which pair of whole numbers a number by chance is. first: the one found before, of slot 1."""
+    a, b = u, v
+    if ti.static(material == 1):
+        a, b = course(u * (1.0 / 1.3), ti.floor(v * (1.0 / 0.13)), 7.0, slot, first)
+    elif ti.static(material == 2):
+        inverse = 1.0 / 0.15 if upright else 1.0 / 0.3
+        a, b = ti.floor(u * inverse), ti.floor(v * inverse)
+    elif ti.static(material == 3):
+        line = ti.floor(v / 0.075)
+        a, b = ti.floor(u / 0.24 + 0.5 * (line - 2.0 * ti.floor(line * 0.5))), line
+    elif ti.static(material == 14):
+        length, height = block(upright)
+        a, b = course(u / length, ti.floor(v / height), 11.0, slot, first)
+    elif ti.static(material == 20):
+        a, b = course(u / 0.19, ti.floor(v / 0.16), 3.0, slot, first)
+    elif ti.static(material == 21):
+        strip, i, j, _ = parquet(u, v)
+        a, b = ti.floor(strip), i * 57.0 + j * 131.0
+    else:
+        a, b = ti.floor(u * (1.0 / 1.2)), ti.floor(v * (1.0 / 0.8))
+    return a, b
+
+
+@ti.func
+def course(along, line, seed, slot, shift):
+    """A course's own shift (slot 0), then the tone of a block in it."""
+    a, b = line, along * 0.0 + seed
+    if slot > 0:
+        b = ti.floor(along + shift)
+    return a, b
+
+
+@ti.func
+def block(upright):
+    """Length and height of hewn stones: blocks in a wall, flags on a floor."""
+    length, height = 0.8, 0.55
+    if upright:
+        length, height = 0.62, 0.31
+    return length, height
+
+
+@ti.func
+def parquet(u, v):
+    """Squares of four strips, every other one across: strips counted, the square, 1 where it is across."""
+    side = 1.0 / 0.36
+    i, j = ti.floor(u * side), ti.floor(v * side)
+    turned = i + j - 2.0 * ti.floor((i + j) * 0.5)
+    return ti.select(turned > 0.5, u, v) * side * 4.0, i, j, turned
+
+
+@ti.func
+def noise_at(material: ti.template(), slot, px, py, pz, u, v, upright, blur, noise):
+    """Where a material's noise is looked up, and how much of it is seen. noise: that of slot 0"""
+    x, y, seen = u, v, 1.0
+    if ti.static(material == 1):
+        seen = 0.07 * fade(blur, 0.022)
+        x, y = u * 2.4 + 13.0 * ti.floor(v * (1.0 / 0.13)), v * 46.0
+        if upright:
+            seen = 0.10 * fade(blur, 0.03)
+            x, y = u * 34.0, v * 2.2
+    elif ti.static(material == 4):
+        x, y = px * 1.1, py * 1.1
+        if slot == 1:
+            x, y = px * 11.0, py * 11.0 + pz * 7.0
+    elif ti.static(material == 5):
+        x, y = u * 0.7, v * 0.7
+        if slot == 1:
+            x, y, seen = u * 55.0, v * 55.0, fade(blur, 0.02)
+    elif ti.static(material == 9):
+        x, y, seen = u * 80.0, v * 80.0, fade(blur, 0.014)
+        if slot == 1:
+            x, y, seen = u * 3.0, v * 3.0, 1.0
+    elif ti.static(material == 12):
+        x, y = px * 0.32 + 5.0, py * 0.75
+        if slot == 1:
+            x, y = px * 0.85, py * 2.3
+        elif slot == 2:
+            x, y = px * 2.3 + 9.0, py * 5.0
+        elif slot == 3:
+            x, y = px * 0.55 + 3.0, py * 1.3
+    elif ti.static(material == 13):
+        x, y = u * 0.45, v * 0.45
+        if slot == 1:
+            x, y = u * 0.8, v * 0.5
+        elif slot == 2:
+            x, y, seen = u * 60.0, v * 60.0, fade(blur, 0.02)
+    elif ti.static(material == 14):
+        x, y, seen = u * 12.0, v * 12.0, fade(blur, 0.1)
+    elif ti.static(material == 15):
+        x, y, seen = u * 3.0, v * 70.0, fade(blur, 0.02)
+    elif ti.static(material == 16):
+        x, y = px + 0.45 * pz, py - 0.6 * pz
+        if slot == 0:
+            x, y = x * 4.2, y * 4.2
+        else:
+            x, y = x * 10.0 + 3.0, y * 10.0
+    elif ti.static(material == 17):
+        x, y = u * 0.6, v * 0.6
+        if slot == 1:
+            x, y = u * 2.7, v * 2.7
+    elif ti.static(material == 18):
+        x, y = u * 0.9, v * 0.9
+        if slot == 1:
+            x, y = u * 6.4 + v * 4.8, v * 6.4 - u * 4.8
+        elif slot == 2:
+            x, y = u * 9.0, v * 9.0
+        elif slot == 3:
+            x, y, seen = u * 34.0, v * 34.0, fade(blur, 0.03)
+    else:
+        x, y = u * 0.83 + v * 0.56, v * 0.83 - u * 0.56
+        if slot == 0:
+            x, y = x * 1.1, y * 1.1
+        elif slot == 1:
+            x, y = x * 0.5 + 0.5 * noise, y * 2.6 + 1.2 * noise
+        else:
+            x, y = x * 4.0, y * 5.0
+    return x, y, seen
+
+
+@ti.func
+def finish(material: ti.template(), px, py, pz, u, v, upright, blur, first, second, many: ti.template()):
+    """Factor of one of GRAINED, of what was looked up: two numbers by chance and up to four of noise."""
     out = u * 0.0 + 1.0
     if ti.static(material >= 12):
-        out = ground_pattern(material, px, py, pz, u, v, upright, blur, kind, source)
+        out = finish_ground(material, px, py, pz, u, v, upright, blur, first, second, many)
     elif ti.static(material == 1):  # wood
         if upright:
-            strong = 0.10 * fade(blur, 0.03)
-            if strong > 0:
-                out = 1.0 + (kind.noise(u * 34.0, v * 2.2, *source) - 0.5) * strong
+            out = 1.0 + (many[0] - 0.5) * (0.10 * fade(blur, 0.03))
         else:
-            row = v * (1.0 / 0.13)
-            line = ti.floor(row)
-            along = u * (1.0 / 1.3) + kind.hashed(line, 7.0, *source)
-            tone = kind.hashed(line, ti.floor(along), *source)
-            out = 1.0 + (tone - 0.5) * 0.13 * fade(blur, 0.13)
-            strong = 0.07 * fade(blur, 0.022)
-            if strong > 0:
-                out += (kind.noise(u * 2.4 + 13.0 * line, v * 46.0, *source) - 0.5) * strong
+            row, along = v * (1.0 / 0.13), u * (1.0 / 1.3) + first
+            out = 1.0 + (second - 0.5) * 0.13 * fade(blur, 0.13)
+            out += (many[0] - 0.5) * (0.07 * fade(blur, 0.022))
             gap = greater(
                 joint(row, 0.004 / 0.13, blur * (1.0 / 0.13)), joint(along, 0.004 / 1.3, blur * (1.0 / 1.3))
             )
@@ -145,139 +318,103 @@ def pattern(material: ti.template(), px, py, pz, n, blur, kind: ti.template(), s
     elif ti.static(material == 2):  # tile
         size = 0.15 if upright else 0.3
         inverse = 1.0 / 0.15 if upright else 1.0 / 0.3
-        x, y = u * inverse, v * inverse
-        tone = kind.hashed(ti.floor(x), ti.floor(y), *source)
-        out = 1.0 + (tone - 0.5) * 0.05 * fade(blur, size)
+        out = 1.0 + (first - 0.5) * 0.05 * fade(blur, size)
         line = 0.005 * inverse
-        gap = greater(joint(x, line, blur * inverse), joint(y, line, blur * inverse))
+        gap = greater(joint(u * inverse, line, blur * inverse), joint(v * inverse, line, blur * inverse))
         out *= 1.0 - 0.24 * gap
     elif ti.static(material == 3):  # brick
         y = v / 0.075
         line = ti.floor(y)
         x = u / 0.24 + 0.5 * (line - 2.0 * ti.floor(line * 0.5))
-        tone = kind.hashed(ti.floor(x), line, *source)
-        out = 1.0 + (tone - 0.5) * 0.2 * fade(blur, 0.12)
+        out = 1.0 + (first - 0.5) * 0.2 * fade(blur, 0.12)
         gap = greater(joint(x, 0.012 / 0.24, blur / 0.24), joint(y, 0.012 / 0.075, blur / 0.075))
         out *= 1.0 + 0.28 * gap
     elif ti.static(material == 4):  # grass
-        broad = kind.noise(px * 1.1, py * 1.1, *source)
-        tuft = kind.noise(px * 11.0, py * 11.0 + pz * 7.0, *source)
-        patch = bounded((broad - 0.42) * 6.0, 0.0, 1.0)
-        blade = bounded((tuft - 0.62) * 7.0, 0.0, 1.0)
+        patch = bounded((many[0] - 0.42) * 6.0, 0.0, 1.0)
+        blade = bounded((many[1] - 0.62) * 7.0, 0.0, 1.0)
         out = 0.95 + 0.09 * patch - 0.13 * blade * fade(blur, 0.12)
     elif ti.static(material == 5):  # asphalt
-        out = 1.0 + (kind.noise(u * 0.7, v * 0.7, *source) - 0.5) * 0.08
-        strong = 0.16 * fade(blur, 0.02)
-        if strong > 0:
-            out += (kind.noise(u * 55.0, v * 55.0, *source) - 0.5) * strong
+        out = 1.0 + (many[0] - 0.5) * 0.08
+        out += (many[1] - 0.5) * (0.16 * fade(blur, 0.02))
     elif ti.static(material == 6):  # cloth
         strong = 0.05 * fade(blur, 0.006)
         if strong > 0:
             out = 1.0 - strong * (joint(u / 0.006, 0.4, blur / 0.006) + joint(v / 0.006, 0.4, blur / 0.006))
     elif ti.static(material == 9):  # carpet
-        strong = 0.16 * fade(blur, 0.014)
-        if strong > 0:
-            out = 1.0 + (kind.noise(u * 80.0, v * 80.0, *source) - 0.5) * strong
-        out *= 1.0 + (kind.noise(u * 3.0, v * 3.0, *source) - 0.5) * 0.05
+        out = 1.0 + (many[0] - 0.5) * (0.16 * fade(blur, 0.014))
+        out *= 1.0 + (many[1] - 0.5) * 0.05
     return out
 
 
 @ti.func
-def ground_pattern(
-    material: ti.template(), px, py, pz, u, v, upright, blur, kind: ti.template(), source: ti.template()
+def finish_ground(
+    material: ti.template(), px, py, pz, u, v, upright, blur, first, second, many: ti.template()
 ):
     """The materials of landscapes, old walls and machines, on the plane (u, v) through the places."""
     out = u * 0.0 + 1.0
     if ti.static(material == 12):  # water: broken strokes of light on slow swells
-        swell = kind.noise(px * 0.32 + 5.0, py * 0.75, *source)
-        wave = (
-            kind.noise(px * 0.85, py * 2.3, *source) * 0.7
-            + kind.noise(px * 2.3 + 9.0, py * 5.0, *source) * 0.3
-        )
+        wave = many[1] * 0.7 + many[2] * 0.3
         light = contour(wave, 0.56, 0.075, blur * 2.6) + 0.6 * contour(wave, 0.34, 0.05, blur * 2.6)
-        some = bounded((kind.noise(px * 0.55 + 3.0, py * 1.3, *source) - 0.3) * 3.0, 0.0, 1.0)
-        out = 0.97 + (swell - 0.5) * 0.16 + 0.3 * light * some * fade(blur, 0.35)
+        some = bounded((many[3] - 0.3) * 3.0, 0.0, 1.0)
+        out = 0.97 + (many[0] - 0.5) * 0.16 + 0.3 * light * some * fade(blur, 0.35)
     elif ti.static(material == 13):  # sand: ripples the wind made, and grains
-        drift = kind.noise(u * 0.45, v * 0.45, *source)
-        bent = v * 2.6 + 1.6 * kind.noise(u * 0.8, v * 0.5, *source) + 0.35 * u
+        bent = v * 2.6 + 1.6 * many[1] + 0.35 * u
         crest = positive(bent - ti.floor(bent) - 0.5) * 2.0
-        out = 1.0 + (drift - 0.5) * 0.09 + (crest - 0.5) * 0.12 * fade(blur, 0.38)
-        strong = 0.12 * fade(blur, 0.02)
-        if strong > 0:
-            out += (kind.noise(u * 60.0, v * 60.0, *source) - 0.5) * strong
-    elif ti.static(material == 14):  # stone: hewn blocks in a wall, flags on a floor
+        out = 1.0 + (many[0] - 0.5) * 0.09 + (crest - 0.5) * 0.12 * fade(blur, 0.38)
+        out += (many[2] - 0.5) * (0.12 * fade(blur, 0.02))
+    elif ti.static(material == 14):  # stone: hewn blocks in courses, each course shifted, and darker joints
+        length, height = block(upright)
+        gap, varied = 0.014, 0.16
         if upright:
-            out = bonded(u, v, 0.62, 0.31, 0.016, blur, 0.18, 0.28, kind, source)
-        else:
-            out = bonded(u, v, 0.8, 0.55, 0.014, blur, 0.16, 0.28, kind, source)
-        strong = 0.07 * fade(blur, 0.1)
-        if strong > 0:
-            out += (kind.noise(u * 12.0, v * 12.0, *source) - 0.5) * strong
+            gap, varied = 0.016, 0.18
+        row, along = v / height, u / length + first
+        seam = greater(joint(row, gap / height, blur / height), joint(along, gap / length, blur / length))
+        out = (1.0 + (second - 0.5) * varied * fade(blur, height)) * (1.0 - 0.28 * seam)
+        out += (many[0] - 0.5) * (0.07 * fade(blur, 0.1))
     elif ti.static(material == 15):  # metal: broad slanting sheens, brushed along u
         sheen = (px + py) * 0.55 + pz * 0.8
         sheen = positive(sheen - ti.floor(sheen) - 0.5) * 2.0
         sheen = sheen * sheen * (3 - 2 * sheen)
         out = 0.99 + (sheen - 0.46) * 0.13
-        strong = 0.07 * fade(blur, 0.02)
-        if strong > 0:
-            out += (kind.noise(u * 3.0, v * 70.0, *source) - 0.5) * strong
+        out += (many[0] - 0.5) * (0.07 * fade(blur, 0.02))
     elif ti.static(material == 16):  # leaves: light and dark clumps, the same whichever way a face looks
-        x, y = px + 0.45 * pz, py - 0.6 * pz
-        clump = (
-            kind.noise(x * 4.2, y * 4.2, *source) * 0.6 + kind.noise(x * 10.0 + 3.0, y * 10.0, *source) * 0.4
-        )
+        clump = many[0] * 0.6 + many[1] * 0.4
         bright = bounded((clump - 0.55) * 9.0, 0.0, 1.0)
         dark = bounded((0.44 - clump) * 9.0, 0.0, 1.0)
         out = 1.0 + (0.12 * bright - 0.13 * dark) * fade(blur, 0.2)
     elif ti.static(material == 17):  # snow: soft drifts
-        out = 1.0 + (kind.noise(u * 0.6, v * 0.6, *source) - 0.5) * 0.07
-        out += (kind.noise(u * 2.7, v * 2.7, *source) - 0.5) * 0.045 * fade(blur, 0.3)
+        out = 1.0 + (many[0] - 0.5) * 0.07
+        out += (many[1] - 0.5) * 0.045 * fade(blur, 0.3)
     elif ti.static(material == 18):  # earth: trodden patches and pebbles
-        broad = kind.noise(u * 0.9, v * 0.9, *source)
-        x, y = u * 6.4 + v * 4.8, v * 6.4 - u * 4.8
-        stones = kind.noise(x, y, *source) * 0.6 + kind.noise(u * 9.0, v * 9.0, *source) * 0.4
-        pebble = bounded((stones - 0.6) * 9.0, 0.0, 1.0)
-        out = 1.0 + (broad - 0.5) * 0.16 + (0.025 - 0.13 * pebble) * fade(blur, 0.12)
-        strong = 0.1 * fade(blur, 0.03)
-        if strong > 0:
-            out += (kind.noise(u * 34.0, v * 34.0, *source) - 0.5) * strong
+        pebble = bounded((many[1] * 0.6 + many[2] * 0.4 - 0.6) * 9.0, 0.0, 1.0)
+        out = 1.0 + (many[0] - 0.5) * 0.16 + (0.025 - 0.13 * pebble) * fade(blur, 0.12)
+        out += (many[3] - 0.5) * (0.1 * fade(blur, 0.03))
     elif ti.static(material == 19):  # marble: veins that run aslant over large slabs
-        x, y = u * 0.83 + v * 0.56, v * 0.83 - u * 0.56
-        warp = kind.noise(x * 1.1, y * 1.1, *source)
-        vein = (
-            kind.noise(x * 0.5 + 0.5 * warp, y * 2.6 + 1.2 * warp, *source) * 0.8
-            + kind.noise(x * 4.0, y * 5.0, *source) * 0.2
-        )
+        vein = many[1] * 0.8 + many[2] * 0.2
         strong = contour(vein, 0.5, 0.04, blur * 2.2) + 0.6 * contour(vein, 0.7, 0.04, blur * 2.2)
-        out = 1.02 + (warp - 0.5) * 0.11 - 0.2 * strong * fade(blur, 0.3)
+        out = 1.02 + (many[0] - 0.5) * 0.11 - 0.2 * strong * fade(blur, 0.3)
         seam = greater(joint(u / 0.8, 0.01, blur / 0.8), joint(v / 0.8, 0.01, blur / 0.8))
         out *= 1.0 - 0.2 * seam
     elif ti.static(material == 20):  # cobble: small rounded stones in courses
-        row = v / 0.16
-        line = ti.floor(row)
-        along = u / 0.19 + kind.hashed(line, 3.0, *source)
-        tone = kind.hashed(line, ti.floor(along), *source)
-        x, y = along - ti.floor(along) - 0.5, row - line - 0.5
+        row, along = v / 0.16, u / 0.19 + first
+        x, y = along - ti.floor(along) - 0.5, row - ti.floor(row) - 0.5
         edge = greater(positive(x), positive(y)) + 0.35 * (x * x + y * y)
         soft = greater(blur / 0.16, 0.08)
         seam = bounded((edge - 0.5) / soft + 0.5, 0.0, 1.0)
-        out = 1.05 + ((tone - 0.5) * 0.17 - 0.26 * seam) * fade(blur, 0.17)
-    elif ti.static(material == 21):  # parquet: squares of four strips, every other one across
+        out = 1.05 + ((second - 0.5) * 0.17 - 0.26 * seam) * fade(blur, 0.17)
+    elif ti.static(material == 21):  # parquet
         side = 1.0 / 0.36
-        i, j = ti.floor(u * side), ti.floor(v * side)
-        turned = i + j - 2.0 * ti.floor((i + j) * 0.5)
-        strip = ti.select(turned > 0.5, u, v) * side * 4.0
-        tone = kind.hashed(ti.floor(strip), i * 57.0 + j * 131.0, *source)
+        strip, _, _, turned = parquet(u, v)
         seam = greater(
             joint(strip, 0.045, blur * side * 4.0),
             greater(joint(u * side, 0.012, blur * side), joint(v * side, 0.012, blur * side)),
         )
-        out = (1.015 + (tone - 0.5) * 0.13 * fade(blur, 0.12) + (turned - 0.5) * 0.05) * (1.0 - 0.22 * seam)
+        tone = (first - 0.5) * 0.13 * fade(blur, 0.12)
+        out = (1.015 + tone + (turned - 0.5) * 0.05) * (1.0 - 0.22 * seam)
     else:  # plate: sheets of metal with seams between them
         x, y = u * (1.0 / 1.2), v * (1.0 / 0.8)
-        tone = kind.hashed(ti.floor(x), ti.floor(y), *source)
         seam = greater(joint(x, 0.016 / 1.2, blur / 1.2), joint(y, 0.016 / 0.8, blur / 0.8))
-        out = (1.0 + (tone - 0.5) * 0.07 * fade(blur, 0.8)) * (1.0 - 0.26 * seam)
+        out = (1.0 + (first - 0.5) * 0.07 * fade(blur, 0.8)) * (1.0 - 0.26 * seam)
         sheen = (px - py) * 0.4 + pz * 0.6
         out += (positive(sheen - ti.floor(sheen) - 0.5) - 0.25) * 0.16
     return out

@@ -26,19 +26,9 @@ GRAINED = (1, 2, 3, 4, 5, 6, 9, 12, 13, 14, 15, 16, 17, 18, 19, 20, 21, 22)  # d
 #: How many numbers by chance they take, and how often noise is looked up for them.
 TONES = ((1, 2), (2, 1), (3, 1), (14, 2), (20, 2), (21, 1), (22, 1))
 NOISES = (
-    (1, 1),
-    (4, 2),
-    (5, 2),
-    (9, 2),
-    (12, 4),
-    (13, 3),
-    (14, 1),
-    (15, 1),
-    (16, 2),
-    (17, 2),
-    (18, 4),
-    (19, 3),
-)
+    (1, 1), (4, 2), (5, 2), (9, 2), (12, 4), (13, 3), (14, 1), (15, 1), (16, 2), (17, 2), (18, 4), (19, 3)
+)  # fmt: skip
+SEAMED = (1, 2, 3, 6, 14, 19, 21, 22)  # those that have joints both ways
 
 
 def noise_lattice() -> NDArray[np.float32]:
@@ -168,11 +158,25 @@ def pattern(material, px, py, pz, n, blur, kind: ti.template(), source: ti.templ
                 noise_2 = found
             else:
                 noise_3 = found
+    seam, seam_too = nothing, nothing  # joints across and along
+    x, y = u, v
+    wide, blur_x, wide_too, blur_y = 0.0, 0.0, 0.0, 0.0
+    for k in ti.static(SEAMED):
+        if material == k:
+            x, wide, blur_x, y, wide_too, blur_y = seams_at(k, u, v, upright, blur, first)
+    if wide > 0.0:
+        seam, seam_too = joint(x, wide, blur_x), joint(y, wide_too, blur_y)
     out = nothing + 1.0
     for k in ti.static(GRAINED):
         if material == k:
             out = finish(
-                k, px, py, pz, u, v, upright, blur, first, second, (noise, noise_1, noise_2, noise_3)
+                k,
+                (px, py, pz, u, v),
+                upright,
+                blur,
+                (first, second),
+                (seam, seam_too),
+                (noise, noise_1, noise_2, noise_3),
             )
     return out
 
@@ -299,122 +303,160 @@ def noise_at(material: ti.template(), slot, px, py, pz, u, v, upright, blur, noi
 
 
 @ti.func
-def finish(material: ti.template(), px, py, pz, u, v, upright, blur, first, second, many: ti.template()):
-    """Factor of one of GRAINED, of what was looked up: two numbers by chance and up to four of noise."""
-    out = u * 0.0 + 1.0
+def seams_at(material: ti.template(), u, v, upright, blur, first):
+    """Where the joints of a material lie, on whole numbers; how wide they and a pixel are there: one way,
+    then the other. A width of 0 for none. first: the first number by chance"""
+    x, wide, blur_x = v, 0.0, blur
+    y, wide_too, blur_y = u, 0.0, blur
+    if ti.static(material == 1):
+        if not upright:
+            x, wide, blur_x = v * (1.0 / 0.13), 0.004 / 0.13, blur * (1.0 / 0.13)
+            y, wide_too, blur_y = u * (1.0 / 1.3) + first, 0.004 / 1.3, blur * (1.0 / 1.3)
+    elif ti.static(material == 2):
+        inverse = 1.0 / 0.15 if upright else 1.0 / 0.3
+        x, wide, blur_x = v * inverse, 0.005 * inverse, blur * inverse
+        y, wide_too, blur_y = u * inverse, 0.005 * inverse, blur * inverse
+    elif ti.static(material == 3):
+        x, wide, blur_x = v / 0.075, 0.012 / 0.075, blur / 0.075
+        line = ti.floor(x)
+        y = u / 0.24 + 0.5 * (line - 2.0 * ti.floor(line * 0.5))
+        wide_too, blur_y = 0.012 / 0.24, blur / 0.24
+    elif ti.static(material == 6):
+        if fade(blur, 0.006) > 0:
+            x, wide, blur_x = v / 0.006, 0.4, blur / 0.006
+            y, wide_too, blur_y = u / 0.006, 0.4, blur / 0.006
+    elif ti.static(material == 14):
+        length, height = block(upright)
+        gap = 0.016 if upright else 0.014
+        x, wide, blur_x = v / height, gap / height, blur / height
+        y, wide_too, blur_y = u / length + first, gap / length, blur / length
+    elif ti.static(material == 19):
+        x, wide, blur_x = v / 0.8, 0.01, blur / 0.8
+        y, wide_too, blur_y = u / 0.8, 0.01, blur / 0.8
+    elif ti.static(material == 21):
+        side = 1.0 / 0.36
+        x, wide, blur_x = v * side, 0.012, blur * side
+        y, wide_too, blur_y = u * side, 0.012, blur * side
+    else:
+        x, wide, blur_x = v * (1.0 / 0.8), 0.016 / 0.8, blur / 0.8
+        y, wide_too, blur_y = u * (1.0 / 1.2), 0.016 / 1.2, blur / 1.2
+    return x, wide, blur_x, y, wide_too, blur_y
+
+
+@ti.func
+def finish(
+    material: ti.template(),
+    place: ti.template(),
+    upright,
+    blur,
+    tone: ti.template(),
+    seams: ti.template(),
+    noise: ti.template(),
+):
+    """Factor of one of GRAINED, of what was found: numbers by chance, joints across and along, and noise.
+
+    place: x, y and z in the world, and two coordinates on the surface
+    """
+    v = place[4]
+    out = v * 0.0 + 1.0
     if ti.static(material >= 12):
-        out = finish_ground(material, px, py, pz, u, v, upright, blur, first, second, many)
+        out = finish_ground(material, place, upright, blur, tone, seams, noise)
     elif ti.static(material == 1):  # wood
         if upright:
-            out = 1.0 + (many[0] - 0.5) * (0.10 * fade(blur, 0.03))
+            out = 1.0 + (noise[0] - 0.5) * (0.10 * fade(blur, 0.03))
         else:
-            row, along = v * (1.0 / 0.13), u * (1.0 / 1.3) + first
-            out = 1.0 + (second - 0.5) * 0.13 * fade(blur, 0.13)
-            out += (many[0] - 0.5) * (0.07 * fade(blur, 0.022))
-            gap = greater(
-                joint(row, 0.004 / 0.13, blur * (1.0 / 0.13)), joint(along, 0.004 / 1.3, blur * (1.0 / 1.3))
-            )
-            out *= 1.0 - 0.3 * gap
+            out = 1.0 + (tone[1] - 0.5) * 0.13 * fade(blur, 0.13)
+            out += (noise[0] - 0.5) * (0.07 * fade(blur, 0.022))
+            out *= 1.0 - 0.3 * greater(seams[0], seams[1])
     elif ti.static(material == 2):  # tile
         size = 0.15 if upright else 0.3
-        inverse = 1.0 / 0.15 if upright else 1.0 / 0.3
-        out = 1.0 + (first - 0.5) * 0.05 * fade(blur, size)
-        line = 0.005 * inverse
-        gap = greater(joint(u * inverse, line, blur * inverse), joint(v * inverse, line, blur * inverse))
-        out *= 1.0 - 0.24 * gap
+        out = 1.0 + (tone[0] - 0.5) * 0.05 * fade(blur, size)
+        out *= 1.0 - 0.24 * greater(seams[0], seams[1])
     elif ti.static(material == 3):  # brick
-        y = v / 0.075
-        line = ti.floor(y)
-        x = u / 0.24 + 0.5 * (line - 2.0 * ti.floor(line * 0.5))
-        out = 1.0 + (first - 0.5) * 0.2 * fade(blur, 0.12)
-        gap = greater(joint(x, 0.012 / 0.24, blur / 0.24), joint(y, 0.012 / 0.075, blur / 0.075))
-        out *= 1.0 + 0.28 * gap
+        out = 1.0 + (tone[0] - 0.5) * 0.2 * fade(blur, 0.12)
+        out *= 1.0 + 0.28 * greater(seams[0], seams[1])
     elif ti.static(material == 4):  # grass
-        patch = bounded((many[0] - 0.42) * 6.0, 0.0, 1.0)
-        blade = bounded((many[1] - 0.62) * 7.0, 0.0, 1.0)
+        patch = bounded((noise[0] - 0.42) * 6.0, 0.0, 1.0)
+        blade = bounded((noise[1] - 0.62) * 7.0, 0.0, 1.0)
         out = 0.95 + 0.09 * patch - 0.13 * blade * fade(blur, 0.12)
     elif ti.static(material == 5):  # asphalt
-        out = 1.0 + (many[0] - 0.5) * 0.08
-        out += (many[1] - 0.5) * (0.16 * fade(blur, 0.02))
+        out = 1.0 + (noise[0] - 0.5) * 0.08
+        out += (noise[1] - 0.5) * (0.16 * fade(blur, 0.02))
     elif ti.static(material == 6):  # cloth
-        strong = 0.05 * fade(blur, 0.006)
-        if strong > 0:
-            out = 1.0 - strong * (joint(u / 0.006, 0.4, blur / 0.006) + joint(v / 0.006, 0.4, blur / 0.006))
+        out = 1.0 - 0.05 * fade(blur, 0.006) * (seams[1] + seams[0])
     elif ti.static(material == 9):  # carpet
-        out = 1.0 + (many[0] - 0.5) * (0.16 * fade(blur, 0.014))
-        out *= 1.0 + (many[1] - 0.5) * 0.05
+        out = 1.0 + (noise[0] - 0.5) * (0.16 * fade(blur, 0.014))
+        out *= 1.0 + (noise[1] - 0.5) * 0.05
     return out
 
 
 @ti.func
 def finish_ground(
-    material: ti.template(), px, py, pz, u, v, upright, blur, first, second, many: ti.template()
+    material: ti.template(),
+    place: ti.template(),
+    upright,
+    blur,
+    tone: ti.template(),
+    seams: ti.template(),
+    noise: ti.template(),
 ):
-    """The materials of landscapes, old walls and machines, on the plane (u, v) through the places."""
+    """The materials of landscapes, old walls and machines."""
+    px, py, pz, u, v = place[0], place[1], place[2], place[3], place[4]
     out = u * 0.0 + 1.0
     if ti.static(material == 12):  # water: broken strokes of light on slow swells
-        wave = many[1] * 0.7 + many[2] * 0.3
+        wave = noise[1] * 0.7 + noise[2] * 0.3
         light = contour(wave, 0.56, 0.075, blur * 2.6) + 0.6 * contour(wave, 0.34, 0.05, blur * 2.6)
-        some = bounded((many[3] - 0.3) * 3.0, 0.0, 1.0)
-        out = 0.97 + (many[0] - 0.5) * 0.16 + 0.3 * light * some * fade(blur, 0.35)
+        some = bounded((noise[3] - 0.3) * 3.0, 0.0, 1.0)
+        out = 0.97 + (noise[0] - 0.5) * 0.16 + 0.3 * light * some * fade(blur, 0.35)
     elif ti.static(material == 13):  # sand: ripples the wind made, and grains
-        bent = v * 2.6 + 1.6 * many[1] + 0.35 * u
+        bent = v * 2.6 + 1.6 * noise[1] + 0.35 * u
         crest = positive(bent - ti.floor(bent) - 0.5) * 2.0
-        out = 1.0 + (many[0] - 0.5) * 0.09 + (crest - 0.5) * 0.12 * fade(blur, 0.38)
-        out += (many[2] - 0.5) * (0.12 * fade(blur, 0.02))
+        out = 1.0 + (noise[0] - 0.5) * 0.09 + (crest - 0.5) * 0.12 * fade(blur, 0.38)
+        out += (noise[2] - 0.5) * (0.12 * fade(blur, 0.02))
     elif ti.static(material == 14):  # stone: hewn blocks in courses, each course shifted, and darker joints
-        length, height = block(upright)
-        gap, varied = 0.014, 0.16
-        if upright:
-            gap, varied = 0.016, 0.18
-        row, along = v / height, u / length + first
-        seam = greater(joint(row, gap / height, blur / height), joint(along, gap / length, blur / length))
-        out = (1.0 + (second - 0.5) * varied * fade(blur, height)) * (1.0 - 0.28 * seam)
-        out += (many[0] - 0.5) * (0.07 * fade(blur, 0.1))
+        height = block(upright)[1]
+        varied = 0.18 if upright else 0.16
+        out = 1.0 + (tone[1] - 0.5) * varied * fade(blur, height)
+        out *= 1.0 - 0.28 * greater(seams[0], seams[1])
+        out += (noise[0] - 0.5) * (0.07 * fade(blur, 0.1))
     elif ti.static(material == 15):  # metal: broad slanting sheens, brushed along u
         sheen = (px + py) * 0.55 + pz * 0.8
         sheen = positive(sheen - ti.floor(sheen) - 0.5) * 2.0
         sheen = sheen * sheen * (3 - 2 * sheen)
         out = 0.99 + (sheen - 0.46) * 0.13
-        out += (many[0] - 0.5) * (0.07 * fade(blur, 0.02))
+        out += (noise[0] - 0.5) * (0.07 * fade(blur, 0.02))
     elif ti.static(material == 16):  # leaves: light and dark clumps, the same whichever way a face looks
-        clump = many[0] * 0.6 + many[1] * 0.4
+        clump = noise[0] * 0.6 + noise[1] * 0.4
         bright = bounded((clump - 0.55) * 9.0, 0.0, 1.0)
         dark = bounded((0.44 - clump) * 9.0, 0.0, 1.0)
         out = 1.0 + (0.12 * bright - 0.13 * dark) * fade(blur, 0.2)
     elif ti.static(material == 17):  # snow: soft drifts
-        out = 1.0 + (many[0] - 0.5) * 0.07
-        out += (many[1] - 0.5) * 0.045 * fade(blur, 0.3)
+        out = 1.0 + (noise[0] - 0.5) * 0.07
+        out += (noise[1] - 0.5) * 0.045 * fade(blur, 0.3)
     elif ti.static(material == 18):  # earth: trodden patches and pebbles
-        pebble = bounded((many[1] * 0.6 + many[2] * 0.4 - 0.6) * 9.0, 0.0, 1.0)
-        out = 1.0 + (many[0] - 0.5) * 0.16 + (0.025 - 0.13 * pebble) * fade(blur, 0.12)
-        out += (many[3] - 0.5) * (0.1 * fade(blur, 0.03))
+        pebble = bounded((noise[1] * 0.6 + noise[2] * 0.4 - 0.6) * 9.0, 0.0, 1.0)
+        out = 1.0 + (noise[0] - 0.5) * 0.16 + (0.025 - 0.13 * pebble) * fade(blur, 0.12)
+        out += (noise[3] - 0.5) * (0.1 * fade(blur, 0.03))
     elif ti.static(material == 19):  # marble: veins that run aslant over large slabs
-        vein = many[1] * 0.8 + many[2] * 0.2
+        vein = noise[1] * 0.8 + noise[2] * 0.2
         strong = contour(vein, 0.5, 0.04, blur * 2.2) + 0.6 * contour(vein, 0.7, 0.04, blur * 2.2)
-        out = 1.02 + (many[0] - 0.5) * 0.11 - 0.2 * strong * fade(blur, 0.3)
-        seam = greater(joint(u / 0.8, 0.01, blur / 0.8), joint(v / 0.8, 0.01, blur / 0.8))
-        out *= 1.0 - 0.2 * seam
+        out = 1.02 + (noise[0] - 0.5) * 0.11 - 0.2 * strong * fade(blur, 0.3)
+        out *= 1.0 - 0.2 * greater(seams[0], seams[1])
     elif ti.static(material == 20):  # cobble: small rounded stones in courses
-        row, along = v / 0.16, u / 0.19 + first
+        row, along = v / 0.16, u / 0.19 + tone[0]
         x, y = along - ti.floor(along) - 0.5, row - ti.floor(row) - 0.5
         edge = greater(positive(x), positive(y)) + 0.35 * (x * x + y * y)
         soft = greater(blur / 0.16, 0.08)
         seam = bounded((edge - 0.5) / soft + 0.5, 0.0, 1.0)
-        out = 1.05 + ((second - 0.5) * 0.17 - 0.26 * seam) * fade(blur, 0.17)
+        out = 1.05 + ((tone[1] - 0.5) * 0.17 - 0.26 * seam) * fade(blur, 0.17)
     elif ti.static(material == 21):  # parquet
-        side = 1.0 / 0.36
         strip, _, _, turned = parquet(u, v)
-        seam = greater(
-            joint(strip, 0.045, blur * side * 4.0),
-            greater(joint(u * side, 0.012, blur * side), joint(v * side, 0.012, blur * side)),
-        )
-        tone = (first - 0.5) * 0.13 * fade(blur, 0.12)
-        out = (1.015 + tone + (turned - 0.5) * 0.05) * (1.0 - 0.22 * seam)
+        seam = greater(joint(strip, 0.045, blur * (1.0 / 0.36) * 4.0), greater(seams[0], seams[1]))
+        shade = (tone[0] - 0.5) * 0.13 * fade(blur, 0.12)
+        out = (1.015 + shade + (turned - 0.5) * 0.05) * (1.0 - 0.22 * seam)
     else:  # plate: sheets of metal with seams between them
-        x, y = u * (1.0 / 1.2), v * (1.0 / 0.8)
-        seam = greater(joint(x, 0.016 / 1.2, blur / 1.2), joint(y, 0.016 / 0.8, blur / 0.8))
-        out = (1.0 + (first - 0.5) * 0.07 * fade(blur, 0.8)) * (1.0 - 0.26 * seam)
+        out = 1.0 + (tone[0] - 0.5) * 0.07 * fade(blur, 0.8)
+        out *= 1.0 - 0.26 * greater(seams[0], seams[1])
         sheen = (px - py) * 0.4 + pz * 0.6
         out += (positive(sheen - ti.floor(sheen) - 0.5) - 0.25) * 0.16
     return out

@@ -16,10 +16,10 @@ from numpy.typing import NDArray
 
 from ..cinema.continuity import RULES, Finding, findings
 from ..cinema.edges import Edge, Pair, edges
-from ..cinema.subject import person
 from ..emit.types import CutFinding, Trade
 from ..lang.ir import Shot, StoryLine
 from ..propose.cameras import Filming, subject_of
+from ..propose.subjects import performed
 from ..propose.types import CameraProposal, ProposalGrid
 from .selection import choose_takes
 
@@ -89,8 +89,7 @@ def ends_of(
         if story.index in wanted:
             subjects[story.index] = subject_of(shot, story, filming)
             people[story.index] = {
-                name: person(name, filming.skeletons[name], p.world_from_joint, p.position, p.heading)
-                for name, p in story.performances.items()
+                name: performed(name, p, filming.skeletons[name]) for name, p in story.performances.items()
             }
     acting = _acting(line)
     return tuple(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -80,8 +81,13 @@ def _subject(shot: Shot, story: StoryProposal, filming: Filming) -> Subject:
 
 
 def _person(name: str, story: StoryProposal, filming: Filming) -> Subject:
-    acted = story.performances[name]
-    return person(name, filming.skeletons[name], acted.world_from_joint, acted.position, acted.heading)
+    return performed(name, story.performances[name], filming.skeletons[name])
+
+
+@lru_cache(maxsize=64)  # asked for again for every camera, and in every story of a line by most of the cast
+def performed(name: str, acted: Performance, skeleton: Skeleton) -> Subject:
+    """Somebody as they are over a shot; its arrays are not to be written to."""
+    return person(name, skeleton, acted.world_from_joint, acted.position, acted.heading)
 
 
 def _with_room(subject: Subject, story: StoryProposal, filming: Filming) -> Subject:
@@ -240,7 +246,7 @@ def pillars_of(
         if name in without:
             continue
         skeleton = filming.skeletons[name]
-        marks = person(name, skeleton, acted.world_from_joint, acted.position, acted.heading).landmarks
+        marks = performed(name, acted, skeleton).landmarks
         hips = acted.world_from_joint[:, JOINT["hips"], :3, 3].astype(float)
         if shot.view == "ots" and name in shot.whose:
             out.append((_on_floor(hips, acted), marks["crown"], _NECK))

@@ -88,6 +88,8 @@ class TrainConfig:
         as at a glance
     graded: how much less than 1 the label of a good clip is that is only just good enough, where clips say
         how good they are
+    anchored: what the weights keep, in the end, of those they began with: both are averaged in that share
+        (Wortsman et al. 2022, "Robust fine-tuning"), so that what was learnt before is not lost
     smoothing: label smoothing; held_out: share of the clips, by whole groups, kept for evaluation
     calibration: batches over which batch-norm statistics are taken anew at full size at the end
     autocast: compute in bfloat16 where network and machine allow; augment: mirror, and vary the light
@@ -116,6 +118,7 @@ class TrainConfig:
     unguided: float = 0.3
     glanced: float = 0.25
     graded: float = 0.3
+    anchored: float = 0.0
     held_out: float = 0.15
     calibration: int = 40
     autocast: bool = True

@@ -102,7 +102,7 @@ def train(
             raise RankerError(f"{data_dir}: its clips have no guides, and the recipe looks at nothing else")
     moved = torch.from_numpy(motions(data)) if config.motion else None
     model = ShotRanker(shape)
-    began = take_over(model, start) if start else None
+    began, anchor = take_over(model, start) if start else (None, {})
     settle(model, data, learn, config.seed)
     model.to(device)
     model.to(memory_format=torch.channels_last)  # type: ignore[call-overload]
@@ -166,6 +166,10 @@ def train(
                 _keep(state, config, learning, epoch + 1, step)
                 kept = time.monotonic()
 
+        with torch.no_grad():  # after the checkpoint, so that a run that goes on does it once
+            for name, parameter in model.named_parameters():
+                if name in anchor:
+                    parameter.lerp_(anchor[name].to(parameter), config.anchored)
         # Small pictures leave batch norm with the wrong statistics for full ones.
         calibrate(model, data, framed, config, device)
         ranges = int8_ranges(model.cpu(), data, framed, config.seed)
@@ -189,8 +193,8 @@ def train(
     return measured
 
 
-def take_over(model: ShotRanker, folder: str | Path) -> str:
-    """Give a network all of other weights that it has a place for, and return the digest of these."""
+def take_over(model: ShotRanker, folder: str | Path) -> tuple[str, dict[str, Tensor]]:
+    """Give a network all of other weights that it has a place for, and return their digest and these."""
     other, card = load_tensors(folder)
     ours = model.state_dict()
     fit = {k: v for k, v in other.items() if k in ours and v.shape == ours[k].shape}
@@ -203,7 +207,7 @@ def take_over(model: ShotRanker, folder: str | Path) -> str:
         if getattr(words, f"{name}s") != getattr(others, f"{name}s"):
             fit = {k: v for k, v in fit.items() if not k.startswith(name)}
     model.load_state_dict(ours | fit)
-    return card.sha256
+    return card.sha256, fit
 
 
 def settle(model: ShotRanker, data: Dataset, clips: NDArray[np.int64], seed: int = 0) -> None:

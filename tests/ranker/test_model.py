@@ -103,7 +103,7 @@ def test_a_training_starts_from_other_weights_as_far_as_they_fit(tmp_path: Path)
     other = ShotRanker(model_config(moments=True))
     card = save_weights(tmp_path / "other", other)
     same = ShotRanker(model_config(moments=True, motion=8))
-    assert take_over(same, tmp_path / "other") == card.sha256
+    assert take_over(same, tmp_path / "other")[0] == card.sha256
     torch.testing.assert_close(same.angle.weight, other.angle.weight.half().float())
 
     words = Words(("static", "zoom", "roll"), WORDS.scales, WORDS.angles)
@@ -120,6 +120,24 @@ def test_a_training_starts_from_other_weights_as_far_as_they_fit(tmp_path: Path)
     torch.testing.assert_close(plain.backbone.conv1.weight, other.backbone.conv1.weight.half().float())
     with pytest.raises(RankerError, match="of a resnet18, and no resnet50"):
         take_over(ShotRanker(model_config(backbone="resnet50")), tmp_path / "other")
+
+
+def test_weights_that_are_anchored_end_between_where_they_began_and_where_they_got(tmp_path: Path) -> None:
+    write_clips(tmp_path / "data", 20)
+    short = replace(TINY, phases=(Phase(1, SIZE, 2, 1, 8),), held_out=0.2)
+    train(tmp_path / "data", tmp_path / "first", short)
+    start = tmp_path / "first" / "weights"
+    runs = {}
+    for share in (0.0, 0.25, 1.0):
+        config = replace(short, seed=5, anchored=share)
+        train(tmp_path / "data", tmp_path / str(share), config, start=start)
+        runs[share] = load_file(tmp_path / str(share) / "weights" / "model.safetensors")
+    began = load_file(start / "model.safetensors")
+    for name in ("angle.weight", "backbone.conv1.weight", "contrast.0.weight"):
+        free, between, kept = (runs[share][name].float() for share in (0.0, 0.25, 1.0))
+        assert not torch.equal(free, kept)
+        torch.testing.assert_close(kept, began[name].float())
+        torch.testing.assert_close(between, 0.75 * free + 0.25 * kept, rtol=2e-3, atol=2e-3)
 
 
 def test_a_training_that_goes_on_from_weights_says_so_and_is_ahead(tmp_path: Path) -> None:
@@ -178,6 +196,6 @@ def test_a_training_starts_from_weights_of_a_network_that_is_no_more(tmp_path: P
         load_model(tmp_path / "other")
     ours = ShotRanker(model_config(moments=True))
     own = ours.liked.weight.clone()
-    assert take_over(ours, tmp_path / "other") == card["sha256"]
+    assert take_over(ours, tmp_path / "other")[0] == card["sha256"]
     assert torch.equal(ours.liked.weight, own)
     torch.testing.assert_close(ours.angle.weight, other.angle.weight.half().float())

@@ -50,7 +50,7 @@ def _facts(board: Storyboard, line: StoryLine, shot: Shot) -> dict[str, str]:
         "angle": _choice(shot.angles),
         "movement": _movements(shot.movements),
         "view": " ".join((shot.view, *shot.whose)) if shot.view else "",
-        "lens": _range(*shot.lens, "mm"),
+        "lens": "any" if shot.any_lens else _range(*shot.lens, "mm"),
         "aperture": f"f/{shot.aperture:g}" if shot.aperture else "",
         "roll": f"{math.degrees(shot.roll):.3g}°" if shot.roll else "",
         "ease": "|".join(_EASES.get(e, f"{e:g}") for e in shot.ease) if len(shot.ease) < _MANY else "any",

@@ -132,9 +132,8 @@ def test_every_shot_is_accounted_for_once(one: list[int], two: list[int]) -> Non
 def test_everything_a_shot_says_is_compared() -> None:
     """A new option of shots must be told of in `vdsl/pipeline/facts.py`, or listed here as not compared."""
     told = {
-        "movements", "scales", "angles", "lens", "any_lens", "ease", "duration", "roll", "focus", "say", "note",
-        "proposals",
-        "takes", "speed", "style", "feelings", "view", "whose", "focus_to", "aperture",
+        "movements", "scales", "angles", "lens", "any_lens", "ease", "duration", "roll", "focus", "say",
+        "note", "proposals", "takes", "speed", "style", "feelings", "view", "whose", "focus_to", "aperture",
     }  # fmt: skip
     place = {"id", "line", "span", "drawn"}
     assert {f.name for f in fields(Shot)} == told | place

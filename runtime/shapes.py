@@ -183,7 +183,7 @@ def _round_box(half: NDArray[np.float64], radius: float, steps: int) -> _Arrays:
 
 def round_segments(radius: float) -> int:
     """How many sides a circle of that radius needs to look round in a picture."""
-    return int(np.clip(6 + 44 * math.sqrt(max(radius, 0.0)), 8, 28)) // 2 * 2
+    return int(np.clip(4 + 80 * math.sqrt(max(radius, 0.0)), 8, 32)) // 2 * 2
 
 
 def lathe(
@@ -218,14 +218,8 @@ def lathe(
 
 def _revolve(points: NDArray[np.float64], ring: bool, sides: int, crease: float) -> _Arrays:
     step = np.diff(points, axis=0)
-    flat = np.stack([step[:, 1], -step[:, 0]], 1)
-    flat /= np.linalg.norm(flat, axis=1, keepdims=True)
-    first, last = flat.copy(), flat.copy()  # normals at the start and the end of each edge
-    count = len(flat)
-    for i in range(count if ring else count - 1):
-        j = (i + 1) % count
-        if flat[i] @ flat[j] > math.cos(crease):
-            first[j] = last[i] = flat[i] + flat[j]
+    first, last = _end_normals(step, ring, crease)
+    count = len(step)
     angle = np.arange(sides) * (2 * math.pi / sides)
     cos, sin = np.cos(angle), np.sin(angle)
     vertices, normals, faces = [], [], []
@@ -242,6 +236,23 @@ def _revolve(points: NDArray[np.float64], ring: bool, sides: int, crease: float)
         if points[e + 1, 0] > 1e-9:
             faces.append(np.stack([low, high_next, high], 1))
     return np.concatenate(vertices), np.concatenate(faces), np.concatenate(normals)
+
+
+def _end_normals(
+    edges: NDArray[np.float64], ring: bool, crease: float
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Normals [E, 2] of the edges of an outline at their starts and ends, of any length: those of neighbours
+    mixed where they meet in less than ``crease``, by their lengths, so that beside a narrow rounding a side
+    still looks straight."""
+    normal = np.stack([edges[:, 1], -edges[:, 0]], 1)
+    unit = normal / np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-12)
+    first, last = normal.copy(), normal.copy()
+    count = len(edges)
+    for i in range(count if ring else count - 1):
+        j = (i + 1) % count
+        if unit[i] @ unit[j] > math.cos(crease):
+            first[j] = last[i] = normal[i] + normal[j]
+    return first, last
 
 
 def cylinder(
@@ -336,14 +347,7 @@ def extrude(
     if np.sum(points[:, 0] * following[:, 1] - points[:, 1] * following[:, 0]) < 0:
         points = points[::-1]
     count = len(points)
-    edge = np.roll(points, -1, axis=0) - points
-    flat = np.stack([edge[:, 1], -edge[:, 0]], 1)
-    flat /= np.maximum(np.linalg.norm(flat, axis=1, keepdims=True), 1e-12)
-    first, last = flat.copy(), flat.copy()
-    for i in range(count):
-        j = (i + 1) % count
-        if flat[i] @ flat[j] > math.cos(crease):
-            first[j] = last[i] = flat[i] + flat[j]
+    first, last = _end_normals(np.roll(points, -1, axis=0) - points, True, crease)
     vertices, normals, faces = [], [], []
     for i in range(count):
         a, b = points[i], points[(i + 1) % count]

@@ -12,7 +12,21 @@ from .beards import beard_pieces
 from .field import Field, Points, Values
 from .hair import hair_cover, hair_pieces
 from .hats import hat_line, hat_pieces, hides_hair
-from .head import EARS_COVERED, Head, brow_line, ear, eye_opening, face, lips, mouth, on_front, with_neck
+from .head import (
+    EARS_COVERED,
+    Head,
+    brow_line,
+    ear,
+    ear_bowl,
+    eye_opening,
+    face,
+    lips,
+    mouth,
+    on_front,
+    under_jaw,
+    under_nose,
+    with_neck,
+)
 from .pieces import Piece, hemmed, parted, parted_all, shade
 from .sheets import sheet, tube
 from .spec import Colour
@@ -79,7 +93,7 @@ def _skin(head: Head) -> list[Piece]:
     patch = polygonise(solid, low, high, 0.0150 * u)
     centre = o + np.array([0.30, 0.10, 0.34]) * u
     focus = Focus((float(centre[0]), float(centre[1]), float(centre[2])), 0.24 * u, 3.6)
-    patch = half(simplify(patch, round(1680 * f.detail), solid, focus))
+    patch = half(simplify(patch, round(1500 * f.detail), solid, focus))
     cover = hair_cover(head)
     if cover is not None:
         patch = cull(patch, cover, 0.012 * u)
@@ -101,37 +115,40 @@ def _skin(head: Head) -> list[Piece]:
     piece = Piece(clip(patch, opening, keep_outside=True), f.spec.skin, "skin", solid, rule="face")
     piece = hemmed(piece, 0.034 * u)
     skin, rim = parted(piece, lash, _LASH, "skin")
+    shadows = []
+    for shadow in (under_jaw(head), under_nose(head)):
+        skin, dark = parted(skin, head.field(shadow), shadow_colour(f), "skin")
+        shadows.append(dark)
     *rest, _slit = parted_all(skin, [head.field(cut) for cut in mouth(head)], _MOUTH, "skin")
     outline = [head.field(cut) for cut in lips(head)]
     looks = [look for piece in rest for look in parted_all(piece, outline, lip_colour(f), "skin")]
-    return [rim, *looks, *_mouth(head)]
+    return [rim, *shadows, *looks, *_mouth(head)]
 
 
 def _mouth(head: Head) -> list[Piece]:
     """What is seen between parted lips: the upper teeth, darkness behind them."""
     m, half_ = head.mouth_z, head.mouth_half
-    rows = np.linspace(m - 0.105, m + 0.050, 7)
-    taper = np.linspace(0.60, 1.0, 7)  # a small chin is narrow
-    back = _behind(head, np.linspace(0.0, 0.96 * half_, 7)[:, None] * taper, rows, 0.050)
-    teeth = _behind(
-        head,
-        np.linspace(0.0, 0.58 * half_, 5)[:, None] * np.ones(3),
-        np.linspace(m + 0.0075, m + 0.050, 3),
-        0.027,
-    )
+    aside = np.linspace(0.0, 1.0, 8)[:, None]
+    # a bowl: at the corners of the lips nearly as far out as these, or one would look past it from aside
+    rows = m + np.linspace(-0.105, 0.050, 7) * (1.0 - 0.7 * aside**2)
+    back = _behind(head, half_ * aside, rows, 0.040 - 0.033 * aside, below=2)
+    teeth = _behind(head, np.linspace(0.0, 0.58 * half_, 5)[:, None], m + np.linspace(0.0075, 0.050, 3), 0.022)
     return [
         Piece(back, _MOUTH, "skin", None, rule="mouth"),
         Piece(teeth, _TEETH, "skin", None, rule="teeth"),
     ]
 
 
-def _behind(head: Head, across: Values, up: Values, depth: float) -> Patch:
-    """A sheet at Y >= 0 over widths ``across`` [C, R] at heights ``up`` [R], ``depth`` behind the foremost
-    skin, facing forward."""
-    y, z = across.reshape(-1), np.broadcast_to(up, across.shape).reshape(-1)
-    points = on_front(face(head), y, z) - np.array([depth, 0.0, 0.0])
-    grid = head.metres(points).reshape(len(across), len(up), 3)
-    return sheet(grid, head.metres(np.zeros((1, 3)))[0])
+def _behind(head: Head, across: Values, up: Values, depth: Values | float, below: int = 0) -> Patch:
+    """A sheet at Y >= 0 over widths ``across`` at heights ``up``, ``depth`` behind the foremost skin, facing
+    forward; all broadcast to [C, R]. below: of so many rows below as well, which an opening jaw brings it to"""
+    y, z = np.broadcast_arrays(across, up)
+    points = on_front(face(head), y.reshape(-1), z.reshape(-1)).reshape(*y.shape, 3)
+    front = points[..., 0].copy()
+    for k in range(1, below + 1):
+        points[:, k:, 0] = np.minimum(points[:, k:, 0], front[:, :-k])
+    points[..., 0] -= depth
+    return sheet(head.metres(points.reshape(-1, 3)).reshape(points.shape), head.metres(np.zeros((1, 3)))[0])
 
 
 def _ears(head: Head) -> list[Piece]:
@@ -139,8 +156,9 @@ def _ears(head: Head) -> list[Piece]:
         return []
     solid, u = head.field(ear(head)), head.unit
     low, high = head.metres(np.array([-0.2, 0.22, 0.28])), head.metres(np.array([0.12, 0.48, 0.66]))
-    patch = simplify(polygonise(solid, low, high, 0.0115 * u), 190, solid)
-    return [Piece(patch, head.figure.spec.skin, "skin", solid, rule="head", symmetry="side")]
+    patch = simplify(polygonise(solid, low, high, 0.0115 * u), 170, solid)
+    whole = Piece(patch, head.figure.spec.skin, "skin", solid, rule="head", symmetry="side")
+    return parted(whole, head.field(ear_bowl(head, 0.006)), shadow_colour(head.figure), "skin")
 
 
 def _lash_outline(head: Head) -> Field:
@@ -153,6 +171,12 @@ def _lash_outline(head: Head) -> Field:
         return np.maximum(outer(p), ez + 0.006 - p[:, 2])
 
     return field
+
+
+def shadow_colour(f: Figure) -> Colour:
+    """Skin that never sees the light: darker, and warmer for the light that skin throws on skin."""
+    r, g, b = f.spec.skin
+    return (0.85 * r, 0.77 * g, 0.73 * b)
 
 
 def lip_colour(f: Figure) -> Colour:

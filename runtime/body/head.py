@@ -15,6 +15,9 @@ from numpy.typing import NDArray
 from .anatomy import Figure, neck, shoulders, torso_loft
 from .field import Field, Points, Values, carve, ellipsoid, monotone, round_cone, smooth_min, union, within
 
+_EAR = np.array([-0.030, 0.332, 0.465])
+_LEAN = np.linalg.qr(np.array([[0.94, -0.33, -0.13], [0.30, 0.93, -0.17], [0.18, 0.12, 0.98]]))
+_EAR_LEAN = _LEAN[0].T * np.sign(np.diag(_LEAN[1]))[:, None]
 #: Styles that fall over the ears.
 EARS_COVERED = ("bob", "long")
 
@@ -116,13 +119,14 @@ def face(head: Head) -> Field:
 def ear(head: Head) -> Field:
     """The left ear: an upright shell leaning back, with a bowl."""
     size = 1.0 + 0.10 * head.figure.spec.eld
-    lean = np.array([[0.94, 0.30, 0.18], [-0.33, 0.93, 0.12], [-0.13, -0.17, 0.98]])
-    lean = np.linalg.qr(lean.T)[0].T * np.sign(np.diag(np.linalg.qr(lean.T)[1]))[:, None]
-    c = np.array([-0.030, 0.332, 0.465])
-    shell = ellipsoid(c, (0.066 * size, 0.027, 0.105 * size), lean)
-    lobe = ellipsoid(c + np.array([0.014, -0.014, -0.070]), (0.028, 0.018, 0.030))
-    bowl = ellipsoid(c + np.array([0.018, 0.026, 0.012]), (0.036, 0.020, 0.062), lean)
-    return carve(union([(shell, 0.0), (lobe, 0.03)]), bowl, 0.012)
+    shell = ellipsoid(_EAR, (0.066 * size, 0.027, 0.105 * size), _EAR_LEAN)
+    lobe = ellipsoid(_EAR + np.array([0.014, -0.014, -0.070]), (0.028, 0.018, 0.030))
+    return carve(union([(shell, 0.0), (lobe, 0.03)]), ear_bowl(head), 0.012)
+
+
+def ear_bowl(head: Head, grow: float = 0.0) -> Field:
+    """What is hollow of the left ear. grow: how much wider"""
+    return ellipsoid(_EAR + np.array([0.018, 0.026, 0.012]), np.array([0.036, 0.020, 0.062]) + grow, _EAR_LEAN)
 
 
 # --- outlines: negative inside -------------------------------------------------------
@@ -178,6 +182,31 @@ def mouth(head: Head) -> list[Field]:
         return field
 
     return [edge(1.0), edge(-1.0), lambda p: 0.16 - p[:, 0]]
+
+
+def under_jaw(head: Head) -> Field:
+    """The shadow a head always has on its neck: from the edge of the jaw down, a bow below the chin that
+    rises to the sides."""
+    edge = side_line(((0.40, 0.025), (0.29, 0.022), (0.20, 0.045), (0.10, 0.100), (0.02, 0.165), (-0.06, 0.26)))
+
+    def field(p: Points) -> Values:
+        jaw = edge(np.clip(p[:, 0], -0.06, 0.40))
+        bow = -0.20 + 0.30 * (p[:, 1] / 0.20) ** 2
+        return np.maximum(np.maximum(p[:, 2] - jaw, bow - p[:, 2]), -0.05 - p[:, 0])
+
+    return field
+
+
+def under_nose(head: Head) -> Field:
+    """The underside of the nose, nostrils among it."""
+    top = 0.318 + 0.018 * head.soft
+
+    def field(p: Points) -> Values:
+        y = np.abs(p[:, 1])
+        upright = np.maximum(p[:, 2] - top + 0.18 * y, 0.272 - p[:, 2])
+        return np.maximum(upright, np.maximum(0.347 - p[:, 0], y - 0.075))
+
+    return field
 
 
 def jaw_share(head: Head, p: Points) -> Values:

@@ -92,13 +92,15 @@ def brow_weights(figure: Figure, points: Points) -> NDArray[np.float64]:
 
 
 def mouth_weights(figure: Figure, points: Points) -> NDArray[np.float64]:
-    """Weights of what is inside the mouth: its dark back follows the jaw from the lips down."""
+    """Weights of what is inside the mouth: its dark back follows the jaw from the lips down, and at its
+    sides the lips' corners."""
     head = Head(figure)
     p = head.units(points)
     w = np.zeros((len(points), len(PALETTE)))
     w[:, _COLUMN["jaw"]] = ramp(head.mouth_z + 0.02 - p[:, 2], 0.0, 0.06)
     w[:, _COLUMN["head"]] = 1.0 - w[:, _COLUMN["jaw"]]
-    return w
+    aside = ramp(np.abs(p[:, 1]) / head.mouth_half, 0.5, 1.0)[:, None]
+    return w * (1.0 - aside) + face_weights(figure, points) * aside
 
 
 def beard_weights(figure: Figure, points: Points) -> NDArray[np.float64]:

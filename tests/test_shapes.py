@@ -132,3 +132,16 @@ def test_narrow_bevels_are_lit_as_one_side_and_wide_ones_look_round() -> None:
         assert {tuple(n) for n in corners[:, 0]} == {tuple(n) for n in sides[:, 0]}
     corners, _ = normals_of_faces(0.03)
     assert (corners != corners[:, :1]).any(axis=(1, 2)).sum() == 32
+
+
+def test_a_side_beside_a_narrow_rounding_stays_straight() -> None:
+    """Tones on the side of a jar are upright bands, not wedges."""
+    for mesh, up in (
+        (shapes.cylinder(0.05, 0.12, rounding=0.01, segments=18), 2),
+        (shapes.extrude([(0, 0), (0.2, 0), (0.208, 0.004), (0.208, 0.2), (0, 0.2)], 0.1, crease=1.2), 0),
+    ):
+        corners = mesh.vertices[mesh.faces]
+        long = np.ptp(corners[..., up], axis=1) > 0.08
+        walls = long & (np.abs(mesh.normals[mesh.faces][..., up]).max(axis=1) < 0.5)
+        assert walls.any()
+        assert np.abs(mesh.normals[mesh.faces][walls][..., up]).max() < 0.1

@@ -18,10 +18,12 @@ from .head import (
     brow_line,
     ear,
     ear_bowl,
-    eye_opening,
+    eye_lines,
+    eye_region,
     face,
     lips,
     mouth,
+    nose_region,
     on_front,
     under_jaw,
     under_nose,
@@ -30,12 +32,13 @@ from .head import (
 from .pieces import Piece, hemmed, parted, parted_all, shade
 from .sheets import sheet, tube
 from .spec import Colour
-from .surface import Focus, Patch, clip, cull, half, polygonise, simplify
+from .surface import Focus, Patch, clip, cull, cut_out, half, polygonise, simplify
 
 _WHITE: Colour = (0.97, 0.96, 0.94)
 _DARK: Colour = (0.10, 0.07, 0.07)
 _LASH: Colour = (0.15, 0.10, 0.09)
-_MOUTH: Colour = (0.25, 0.08, 0.08)
+#: Of what is dark between parted lips.
+MOUTH: Colour = (0.25, 0.08, 0.08)
 _TEETH: Colour = (0.96, 0.94, 0.90)
 
 
@@ -93,7 +96,7 @@ def _skin(head: Head) -> list[Piece]:
     patch = polygonise(solid, low, high, 0.0150 * u)
     centre = o + np.array([0.30, 0.10, 0.34]) * u
     focus = Focus((float(centre[0]), float(centre[1]), float(centre[2])), 0.24 * u, 3.6)
-    patch = half(simplify(patch, round(1500 * f.detail), solid, focus))
+    patch = half(simplify(patch, round(1680 * f.detail), solid, focus))
     cover = hair_cover(head)
     if cover is not None:
         patch = cull(patch, cover, 0.012 * u)
@@ -110,19 +113,21 @@ def _skin(head: Head) -> list[Piece]:
         return np.maximum(np.maximum(line - p[:, 2], wide), behind)
 
     patch = clip(patch, shown)
-    opening = head.field(eye_opening(head))
+    _opening, patch = cut_out(
+        patch, head.field(eye_region(head)), [head.field(line) for line in eye_lines(head)]
+    )
     lash = head.field(_lash_outline(head))
-    piece = Piece(clip(patch, opening, keep_outside=True), f.spec.skin, "skin", solid, rule="face")
+    piece = Piece(patch, f.spec.skin, "skin", solid, rule="face")
     piece = hemmed(piece, 0.034 * u)
     skin, rim = parted(piece, lash, _LASH, "skin")
-    shadows = []
-    for shadow in (under_jaw(head), under_nose(head)):
-        skin, dark = parted(skin, head.field(shadow), shadow_colour(f), "skin")
-        shadows.append(dark)
-    *rest, _slit = parted_all(skin, [head.field(cut) for cut in mouth(head)], _MOUTH, "skin")
+    skin, jaw = parted(skin, head.field(under_jaw(head)), shadow_colour(f), "skin")
+    lines = [head.field(line) for line in under_nose(head)]
+    under, patch = cut_out(skin.patch, head.field(nose_region(head)), lines)
+    nose, skin = replace(jaw, patch=under), replace(skin, patch=patch)
+    *rest, _slit = parted_all(skin, [head.field(cut) for cut in mouth(head)], MOUTH, "skin")
     outline = [head.field(cut) for cut in lips(head)]
     looks = [look for piece in rest for look in parted_all(piece, outline, lip_colour(f), "skin")]
-    return [rim, *shadows, *looks, *_mouth(head)]
+    return [rim, jaw, nose, *looks, *_mouth(head)]
 
 
 def _mouth(head: Head) -> list[Piece]:
@@ -132,9 +137,14 @@ def _mouth(head: Head) -> list[Piece]:
     # a bowl: at the corners of the lips nearly as far out as these, or one would look past it from aside
     rows = m + np.linspace(-0.105, 0.050, 7) * (1.0 - 0.7 * aside**2)
     back = _behind(head, half_ * aside, rows, 0.040 - 0.033 * aside, below=2)
-    teeth = _behind(head, np.linspace(0.0, 0.58 * half_, 5)[:, None], m + np.linspace(0.0075, 0.050, 3), 0.022)
+    teeth = _behind(
+        head,
+        np.linspace(0.0, 0.58 * half_, 5)[:, None],
+        m + np.linspace(0.0075, 0.050, 3),
+        np.linspace(0.022, 0.036, 3),
+    )
     return [
-        Piece(back, _MOUTH, "skin", None, rule="mouth"),
+        Piece(back, MOUTH, "skin", None, rule="mouth"),
         Piece(teeth, _TEETH, "skin", None, rule="teeth"),
     ]
 
@@ -164,11 +174,11 @@ def _ears(head: Head) -> list[Piece]:
 def _lash_outline(head: Head) -> Field:
     """A thin crescent along the upper lid."""
     thick = 0.010 + 0.008 * head.fem
-    outer = eye_opening(head, grow=0.004, lift=thick)
+    outer = eye_lines(head, grow=0.004, lift=thick)
     ez = head.eye[2]
 
     def field(p: Points) -> Values:
-        return np.maximum(outer(p), ez + 0.006 - p[:, 2])
+        return np.maximum.reduce([line(p) for line in outer] + [ez + 0.006 - p[:, 2]])
 
     return field
 
@@ -232,7 +242,7 @@ def _eyes(head: Head) -> list[Piece]:
     basis = np.stack([axis, across, np.cross(axis, across)])
     spot = Patch(glint.vertices @ basis + centre, glint.faces)
     pieces.append(Piece(spot, (1.0, 1.0, 1.0), "eye", seen, rule="eye_l", symmetry="side"))
-    return pieces + _lid(head, centre, r * 1.065, seen)
+    return pieces + _lid(head, centre, r * 1.045, seen)
 
 
 #: Turn about Y, radians, that closes an upper lid; and one that draws the lower lid over the iris.
@@ -257,9 +267,9 @@ def _shell(
     centre: NDArray[np.float64], radius: float, pitches: tuple[float, float], droop: float, turn: float
 ) -> tuple[Patch, Patch]:
     """Part of a ball between two pitches, turned about Y; and its border strip next to the pupil."""
-    side, up = np.linspace(-1.14, 1.14, 11), np.linspace(*pitches, 5)
+    side, up = np.linspace(-1.06, 1.06, 11), np.linspace(*pitches, 5)
     yaw, pitch = np.meshgrid(side, up, indexing="ij")
-    pitch = pitch + droop * (yaw / 1.14) ** 2 * (pitch < 0)
+    pitch = pitch + droop * (yaw / 1.06) ** 2 * (pitch < 0)
     points = np.stack([np.cos(yaw) * np.cos(pitch), np.sin(yaw), np.cos(yaw) * np.sin(pitch)], -1).reshape(
         -1, 3
     )

@@ -126,29 +126,46 @@ def ear(head: Head) -> Field:
 
 def ear_bowl(head: Head, grow: float = 0.0) -> Field:
     """What is hollow of the left ear. grow: how much wider"""
-    return ellipsoid(_EAR + np.array([0.018, 0.026, 0.012]), np.array([0.036, 0.020, 0.062]) + grow, _EAR_LEAN)
+    return ellipsoid(
+        _EAR + np.array([0.018, 0.026, 0.012]), np.array([0.036, 0.020, 0.062]) + grow, _EAR_LEAN
+    )
 
 
 # --- outlines: negative inside -------------------------------------------------------
 
 
-def eye_opening(head: Head, grow: float = 0.0, lift: float = 0.0) -> Field:
-    """Almond of the left eye, seen from the front; ``grow`` widens it, ``lift`` raises the upper line."""
+def eye_lines(head: Head, grow: float = 0.0, lift: float = 0.0) -> list[Field]:
+    """The almond of the left eye, seen from the front, as what is inside all of these; ``grow`` widens it,
+    ``lift`` raises the upper line."""
     ex, ey, ez = head.eye
     spec = head.figure.spec
     wide = 0.088 + grow
     up = 0.043 + 0.009 * head.soft + 0.006 * spec.youth - 0.014 * spec.eld + grow
     down = 0.038 + 0.006 * spec.youth + grow
 
-    def field(p: Points) -> Values:
+    def place(p: Points) -> tuple[Values, Values]:
         a = (np.abs(p[:, 1]) - ey) / wide
-        b = p[:, 2] - ez - 0.010 * a
+        return a, p[:, 2] - ez - 0.010 * a
+
+    def upper(p: Points) -> Values:
+        a, b = place(p)
         arch = 1.0 - np.abs(a + 0.12) ** 2.3
-        d = np.maximum(
-            b - (up + lift * np.clip(0.45 + 0.75 * a, 0.15, 1.0)) * arch,
-            -b - down * (1.0 - np.abs(a - 0.05) ** 2.2),
-        )
-        return np.maximum(d, ex + 0.03 - p[:, 0])
+        return b - (up + lift * np.clip(0.45 + 0.75 * a, 0.15, 1.0)) * arch
+
+    def lower(p: Points) -> Values:
+        a, b = place(p)
+        return -b - down * (1.0 - np.abs(a - 0.05) ** 2.2)
+
+    return [upper, lower, lambda p: ex + 0.03 - p[:, 0]]
+
+
+def eye_region(head: Head) -> Field:
+    """A tube that goes back from the front around the left eye."""
+    ex, ey, ez = head.eye
+
+    def field(p: Points) -> Values:
+        around = np.hypot((np.abs(p[:, 1]) - ey) / 0.125, (p[:, 2] - ez) / 0.10) - 1.0
+        return np.maximum(0.1 * around, ex - 0.03 - p[:, 0])
 
     return field
 
@@ -187,7 +204,9 @@ def mouth(head: Head) -> list[Field]:
 def under_jaw(head: Head) -> Field:
     """The shadow a head always has on its neck: from the edge of the jaw down, a bow below the chin that
     rises to the sides."""
-    edge = side_line(((0.40, 0.025), (0.29, 0.022), (0.20, 0.045), (0.10, 0.100), (0.02, 0.165), (-0.06, 0.26)))
+    edge = side_line(
+        ((0.40, 0.025), (0.29, 0.022), (0.20, 0.045), (0.10, 0.100), (0.02, 0.165), (-0.06, 0.26))
+    )
 
     def field(p: Points) -> Values:
         jaw = edge(np.clip(p[:, 0], -0.06, 0.40))
@@ -197,16 +216,20 @@ def under_jaw(head: Head) -> Field:
     return field
 
 
-def under_nose(head: Head) -> Field:
-    """The underside of the nose, nostrils among it."""
+def under_nose(head: Head) -> list[Field]:
+    """The underside of the nose, nostrils among it: what is inside all of these."""
     top = 0.318 + 0.018 * head.soft
+    return [
+        lambda p: p[:, 2] - top + 0.18 * np.abs(p[:, 1]),
+        lambda p: 0.272 - p[:, 2],
+        lambda p: 0.347 - p[:, 0],
+        lambda p: np.abs(p[:, 1]) - 0.075,
+    ]
 
-    def field(p: Points) -> Values:
-        y = np.abs(p[:, 1])
-        upright = np.maximum(p[:, 2] - top + 0.18 * y, 0.272 - p[:, 2])
-        return np.maximum(upright, np.maximum(0.347 - p[:, 0], y - 0.075))
 
-    return field
+def nose_region(head: Head) -> Field:
+    """A ball around the underside of the nose."""
+    return ellipsoid((0.40, 0.0, 0.297), (0.12, 0.12, 0.065 + 0.01 * head.soft))
 
 
 def jaw_share(head: Head, p: Points) -> Values:

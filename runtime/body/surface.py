@@ -141,6 +141,53 @@ def split(patch: Patch, cut: Field) -> tuple[Patch, Patch]:
     return compact(inside), compact(outside)
 
 
+def cut_out(patch: Patch, region: Field, lines: list[Field]) -> tuple[Patch, Patch]:
+    """What lies in a region and inside every one of ``lines``, and a patch without it.
+
+    Cut one smooth line after the other, and no further than the region, it may be smaller than the triangles:
+    of those that have no corner in it a single cut would see nothing.
+    """
+    rest, outside = split(patch, region)
+    parts = [outside]
+    for line in lines:
+        rest, outside = split(rest, line)
+        parts.append(outside)
+    return rest, welded(parts)
+
+
+def welded(parts: list[Patch]) -> Patch:
+    """Patches as one: vertices are shared where they are at the same place, and where one lies on an edge of
+    another triangle, that is divided there, so that nothing shows between them."""
+    counts = np.cumsum([0, *(len(part.vertices) for part in parts)])
+    vertices = np.concatenate([part.vertices for part in parts])
+    faces = np.concatenate([part.faces + n for part, n in zip(parts, counts[:-1], strict=True)])
+    _, first, index = np.unique(vertices, axis=0, return_index=True, return_inverse=True)
+    joined = Patch(vertices[first], index.reshape(-1)[faces])
+    edges = boundary(joined)
+    loose = np.unique(edges)
+    on = {edge: found for edge in map(tuple, edges) if len(found := _between(joined.vertices, edge, loose))}
+    divided = []
+    for k, (a, b, c) in enumerate(joined.faces):
+        for p, q, r in ((a, b, c), (b, c, a), (c, a, b)):
+            if (p, q) in on:
+                chain = [p, *on[p, q], q]
+                divided.append((k, [(s, t, r) for s, t in zip(chain, chain[1:], strict=False)]))
+                break
+    kept = np.delete(joined.faces, [k for k, _ in divided], axis=0)
+    new = np.array([face for _, fan in divided for face in fan], np.int64).reshape(-1, 3)
+    return compact(Patch(joined.vertices, np.concatenate([kept, new])))
+
+
+def _between(vertices: Points, edge: tuple[int, int], others: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Those of some vertices that lie on an edge, on the way from its start to its end."""
+    start, way = vertices[edge[0]], vertices[edge[1]] - vertices[edge[0]]
+    away = vertices[others] - start
+    along = away @ way / max(float(way @ way), 1e-18)
+    off = np.linalg.norm(away - along[:, None] * way, axis=1)
+    found = (off < 1e-6) & (along > 1e-6) & (along < 1.0 - 1e-6)
+    return others[found][np.argsort(along[found])]
+
+
 def _off_zero(values: Values) -> Values:
     return np.where(np.abs(values) < 2e-4, np.where(values < 0, -2e-4, 2e-4), values)
 

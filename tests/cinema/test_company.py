@@ -56,6 +56,18 @@ def test_somebody_whose_body_is_in_the_picture_is_to_have_a_head_in_it() -> None
     assert measured(two((-5.0, 0.3)), *low) == 0.0
 
 
+def test_a_side_of_somebody_counts_and_a_side_of_a_head_is_a_head() -> None:
+    """The frame is 1.85 m wide where both stand, and their middles are just beside it."""
+    beside, low, eyes = (
+        two((0.0, 1.0)),
+        ((1.8, 0.0, 1.0), (0.0, 0.0, 0.7)),
+        ((1.8, 0.0, 1.4), (0.0, 0.0, 1.4)),
+    )
+    assert measured(beside, *low) > 0.99
+    assert measured(two((0.0, 1.3)), *low) == 0.0
+    assert measured(two((0.0, 0.97)), *eyes) == 0.0, "half a person, head and all"
+
+
 def test_those_a_view_is_of_are_no_company() -> None:
     told, said = two((0.0, 0.6)), shot(scale="medium")
     both = subject_of(replace(said, view="two-shot", whose=("anna", "ben")), told, FILMING)

@@ -25,6 +25,8 @@ _FAR = 3.0
 _UPPER = SIGHT[:3]
 #: Metres before the camera from which on somebody is in its picture.
 _BEFORE = 0.2
+#: Half the width of a head and of a trunk, metres.
+_HEAD_HALF, _BODY_HALF = 0.08, 0.18
 
 
 def company_cut(
@@ -46,13 +48,22 @@ def company_cut(
         marks = ("eyes", "chin", "pocket", "waist")
         points = np.stack([one.landmarks[name][at] for name in marks], axis=1)
         xy, depth = project(points[None], camera, axes, takes.track.focal[:, at], takes.track.sensor)
-        inside = within(xy, depth, 0.0)
-        cut = inside[:, :, 2:].any(axis=2) & ~inside[:, :, :2].all(axis=2) & (depth[:, :, 2] > _BEFORE)
+        wide = takes.track.focal[:, at] / takes.track.sensor[0] / np.maximum(depth[:, :, 2], _BEFORE)
+        head = _beside(xy[:, :, :2], depth[:, :, :2], _HEAD_HALF * wide).all(axis=2)
+        body = _beside(xy[:, :, 2:], depth[:, :, 2:], _BODY_HALF * wide).any(axis=2)
+        cut = body & ~head & (depth[:, :, 2] > _BEFORE)
         if cut.any():
             cut &= seen_from(points[:, 2:]).any(axis=2)
             near = (_FAR - depth[:, :, 2] / own) / (_FAR - 1.0)
             out = np.maximum(out, cut * np.clip(near, 0.0, 1.0))
     return np.asarray(out.mean(axis=1))
+
+
+def _beside(xy: Array, depth: Array, aside: Array) -> Bools:
+    """Which of points [P, F, K] are in the frame, or beside it by no more than so much of its width [P, F]:
+    of what they are the middle of, a side is in it."""
+    across = (xy[..., 0] > -aside[..., None]) & (xy[..., 0] < 1.0 + aside[..., None])
+    return np.asarray(across & (xy[..., 1] > 0.0) & (xy[..., 1] < 1.0) & (depth > _BEFORE))
 
 
 def company_shown(

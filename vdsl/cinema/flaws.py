@@ -33,6 +33,7 @@ MOST = (
     ("framing", "feet_cut", 0.03, 0.4),
     ("framing", "size_error", 0.1, 0.4),
     ("framing", "empty", 0.25, 0.9),
+    ("framing", "company_cut", 0.5, 1.0),
     ("headroom", "headroom_error", 0.14, 0.5),
     ("thirds", "thirds_error", 0.2, 0.5),
     ("steadiness", "jerk", 8.0, 30.0),

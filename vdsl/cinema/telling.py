@@ -183,7 +183,7 @@ def faults(measures: Measures, movement: str) -> tuple[str, ...]:
             m["face_covered"] > 0.4,
             f"has an arm before {number('face_covered', m['face_covered'])} of the face",
         ),
-        (m["company_cut"] > 0.6, "shows somebody else without their head"),
+        (m["company_cut"] > 0.5, "shows somebody else without their head"),
         (m["foreground"] > 0.2, f"has something near over {covered} of the picture"),
         (m["backdrop_gap"] > 0.05, "misses a wall behind the subject"),
         (m["interest"] < 0.5, "does not show all the line is about"),

@@ -151,7 +151,8 @@ def _mouth(head: Head) -> list[Piece]:
 
 def _behind(head: Head, across: Values, up: Values, depth: Values | float, below: int = 0) -> Patch:
     """A sheet at Y >= 0 over widths ``across`` at heights ``up``, ``depth`` behind the foremost skin, facing
-    forward; all broadcast to [C, R]. below: of so many rows below as well, which an opening jaw brings it to"""
+    forward; all broadcast to [C, R]. below: behind the skin of so many rows below as well, to which an
+    opening jaw brings it"""
     y, z = np.broadcast_arrays(across, up)
     points = on_front(face(head), y.reshape(-1), z.reshape(-1)).reshape(*y.shape, 3)
     front = points[..., 0].copy()

@@ -6,6 +6,7 @@ A :class:`Patch` is a piece of surface on its way into the body: vertices and fa
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import fast_simplification
 import numpy as np
@@ -171,7 +172,7 @@ def welded(parts: list[Patch]) -> Patch:
         for p, q, r in ((a, b, c), (b, c, a), (c, a, b)):
             if (p, q) in on:
                 chain = [p, *on[p, q], q]
-                divided.append((k, [(s, t, r) for s, t in zip(chain, chain[1:], strict=False)]))
+                divided.append((k, [(s, t, r) for s, t in pairwise(chain)]))
                 break
     kept = np.delete(joined.faces, [k for k, _ in divided], axis=0)
     new = np.array([face for _, fan in divided for face in fan], np.int64).reshape(-1, 3)

@@ -30,6 +30,10 @@ FINEST, OWN = 0, 1  # the finer level, and the mesh as it is; coarser ones follo
 COUNT = OWN + 1 + len(LEVELS)
 SHELL = 400  # faces; shells of fewer keep them
 DETAILED = 2000  # faces; what has fewer is drawn as it is
+#: Metres by which the inside of a look lies above its border while it is simplified.
+LIFT = 0.04
+#: Places in a face at which it is looked for.
+_WITHIN = np.array([[2, 2, 2], [4, 1, 1], [1, 4, 1], [1, 1, 4], [3, 3, 0], [0, 3, 3], [3, 0, 3]]) / 6
 REACH = 0.9  # metres; a body reaches no farther from its middle
 
 
@@ -167,12 +171,22 @@ def _middle(scene: RenderScene, used: NDArray[np.integer], palette: int) -> NDAr
 def _coarser(mesh: Mesh, own: NDArray[np.int64], share: float) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     """A share of some faces, [F, 3] of the mesh's own vertices, and the original face nearest to each, [F].
 
-    Shell by shell, so that neither skin nor cloth takes after the other; small shells stay as they are.
+    Shell by shell, so that neither skin nor cloth takes after the other; small shells stay as they are. What
+    has one look is lifted before, but for its border: looks meet in valleys, which simplifying keeps, so that
+    seams, lips and stripes stay where they are.
     """
-    corners = mesh.faces[own]
+    corners, look = mesh.faces[own], _looks(mesh, own)
     # sharp edges are split vertices: weld them, or they would come apart
     places, local = np.unique(mesh.vertices[corners.reshape(-1)], axis=0, return_inverse=True)
-    local = local.reshape(-1, 3)
+    flat = local.reshape(-1)
+    local = flat.reshape(-1, 3)
+    up = np.zeros((len(places), 3))
+    np.add.at(up, flat, mesh.normals[corners.reshape(-1)])
+    up /= np.maximum(np.linalg.norm(up, axis=1, keepdims=True), 1e-9)
+    first, last = np.full(len(places), len(own)), np.full(len(places), -1)
+    np.minimum.at(first, flat, np.repeat(look, 3))
+    np.maximum.at(last, flat, np.repeat(look, 3))
+    lifted = places + LIFT * up * (first == last)[:, None]
     links = coo_matrix(
         (np.ones(2 * len(local)), (local[:, :2].reshape(-1), local[:, 1:].reshape(-1))),
         shape=(len(places),) * 2,
@@ -188,25 +202,41 @@ def _coarser(mesh: Mesh, own: NDArray[np.int64], share: float) -> tuple[NDArray[
             continue
         used, inside = np.unique(local[here].reshape(-1), return_inverse=True)
         points, faces = fast_simplification.simplify(
-            places[used], inside.reshape(-1, 3).astype(np.int32), target_reduction=1.0 - share
+            lifted[used].astype(np.float32),
+            inside.reshape(-1, 3).astype(np.int32),
+            target_reduction=1.0 - share,
         )
-        found, source = _taken_after(mesh, own[here], points[faces].astype(np.float64))
+        found, source = _taken_after(
+            lifted[local[here]], corners[here], look[here], points[faces].astype(np.float64)
+        )
         out.append(found)
-        nearest.append(source)
+        nearest.append(own[here][source])
     return np.concatenate(out), np.concatenate(nearest)
 
 
+def _looks(mesh: Mesh, own: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Which of some faces look alike: a number for each part, material and colour, [F]."""
+    told = np.column_stack([mesh.parts[own], mesh.materials[own], mesh.colors[own]])
+    _, look = np.unique(told, axis=0, return_inverse=True)
+    return np.asarray(look.reshape(-1))
+
+
 def _taken_after(
-    mesh: Mesh, own: NDArray[np.int64], triangles: NDArray[np.float64]
+    places: NDArray[np.float64],
+    corners: NDArray[np.integer],
+    look: NDArray[np.int64],
+    triangles: NDArray[np.float64],
 ) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """New triangles [F, 3, 3] by the vertices nearest to their corners, and the faces nearest to them."""
-    corners, parts = mesh.faces[own], mesh.parts[own]
-    _, nearest = cKDTree(mesh.vertices[corners].mean(axis=1)).query(triangles.mean(axis=1))
+    """New triangles [F, 3, 3] by vertices near their corners, and the old faces nearest to them.
+
+    places: of the corners of the old faces [N, 3, 3], where ``corners`` says which vertices these are
+    """
+    _, found = cKDTree((_WITHIN @ places).reshape(-1, 3)).query(triangles.mean(axis=1))
+    nearest = found // len(_WITHIN)
     out = np.zeros((len(triangles), 3), np.int64)
-    for part in np.unique(parts[nearest]):
-        here = parts[nearest] == part
-        vertices = np.unique(corners[parts == part])
-        _, found = cKDTree(mesh.vertices[vertices]).query(triangles[here].reshape(-1, 3))
-        out[here] = vertices[found].reshape(-1, 3)
+    for name in np.unique(look[nearest]):
+        here, alike = look[nearest] == name, look == name
+        _, found = cKDTree(places[alike].reshape(-1, 3)).query(triangles[here].reshape(-1, 3))
+        out[here] = corners[alike].reshape(-1)[found].reshape(-1, 3)
     real = (out[:, 0] != out[:, 1]) & (out[:, 1] != out[:, 2]) & (out[:, 2] != out[:, 0])
-    return out[real], own[nearest[real]]
+    return out[real], nearest[real]

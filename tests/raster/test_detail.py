@@ -54,6 +54,30 @@ def test_levels_share_vertices_and_keep_small_shells() -> None:
     assert made.scene.joints.max() == plain.joints.max()  # or a palette would be read beyond its end
 
 
+def test_stripes_stay_stripes_at_coarser_levels() -> None:
+    """A ball in four colours by its height: of each, as much is seen at every level, at the same heights."""
+    ball = sphere((0, 0, 0), (0.5, 0.5, 0.5), (0.8, 0.2, 0.2), 1, 48)
+    middle = ball.vertices[ball.faces].mean(axis=1)
+    colors = ball.colors.copy()
+    for low, colour in ((-0.3, (0.1, 0.2, 0.9)), (0.02, (0.9, 0.9, 0.9)), (0.1, (0.1, 0.6, 0.1))):
+        colors[middle[:, 2] > low] = colour
+    made = scene([box((-9, -9, -1), (9, 9, -0.6), (0.7, 0.7, 0.7))], [replace(ball, colors=colors)])
+    found = with_levels(
+        RenderScene(**{**vars(made), "fitting": np.full(len(ball.faces), LOOSE - 1, np.int32)})
+    )
+    mesh = found.scene.skinned
+    corners = mesh.vertices[mesh.faces].astype(float)
+    area = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
+    for colour in np.unique(colors, axis=0):
+        own = (mesh.colors == colour).all(axis=1)
+        fine = own & (found.level == OWN)
+        for level in range(OWN + 1, COUNT):
+            coarse = own & (found.level == level)
+            assert area[coarse].sum() == pytest.approx(area[fine].sum(), rel=0.18)
+            for end in (np.min, np.max):
+                assert end(corners[coarse][..., 2]) == pytest.approx(end(corners[fine][..., 2]), abs=0.04)
+
+
 def test_farther_is_coarser_and_close_is_finest() -> None:
     chosen = levels_at(1.0, 1.3, 1.7, 3.0, 6.0, 20.0)
     assert chosen[0] == FINEST

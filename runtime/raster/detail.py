@@ -206,8 +206,9 @@ def _coarser(mesh: Mesh, own: NDArray[np.int64], share: float) -> tuple[NDArray[
             inside.reshape(-1, 3).astype(np.int32),
             target_reduction=1.0 - share,
         )
+        alone = np.where(first == last, first, -1)[local[here]]
         found, source = _taken_after(
-            lifted[local[here]], corners[here], look[here], points[faces].astype(np.float64)
+            lifted[local[here]], corners[here], (look[here], alone), points[faces].astype(np.float64)
         )
         out.append(found)
         nearest.append(own[here][source])
@@ -224,19 +225,31 @@ def _looks(mesh: Mesh, own: NDArray[np.int64]) -> NDArray[np.int64]:
 def _taken_after(
     places: NDArray[np.float64],
     corners: NDArray[np.integer],
-    look: NDArray[np.int64],
+    looks: tuple[NDArray[np.int64], NDArray[np.int64]],
     triangles: NDArray[np.float64],
 ) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     """New triangles [F, 3, 3] by vertices near their corners, and the old faces nearest to them.
 
     places: of the corners of the old faces [N, 3, 3], where ``corners`` says which vertices these are
+    looks: of the old faces [N], and of their corners [N, 3], -1 on a border. A new triangle has the look that
+        all of its corners have that lie on no border, else that of the nearest old face
     """
+    look, alone = looks
     _, found = cKDTree((_WITHIN @ places).reshape(-1, 3)).query(triangles.mean(axis=1))
     nearest = found // len(_WITHIN)
+    _, found = cKDTree(places.reshape(-1, 3)).query(triangles.reshape(-1, 3))
+    inner = alone.reshape(-1)[found].reshape(-1, 3)
+    most, least = inner.max(axis=1), np.where(inner < 0, inner.max(axis=1)[:, None], inner).min(axis=1)
+    sure = (most >= 0) & (most == least)
+    taken = np.where(sure, most, look[nearest])
     out = np.zeros((len(triangles), 3), np.int64)
-    for name in np.unique(look[nearest]):
-        here, alike = look[nearest] == name, look == name
+    for name in np.unique(taken):
+        here, alike = np.flatnonzero(taken == name), np.flatnonzero(look == name)
         _, found = cKDTree(places[alike].reshape(-1, 3)).query(triangles[here].reshape(-1, 3))
         out[here] = corners[alike].reshape(-1)[found].reshape(-1, 3)
+        other = here[look[nearest[here]] != name]
+        if len(other):
+            _, found = cKDTree((_WITHIN @ places[alike]).reshape(-1, 3)).query(triangles[other].mean(axis=1))
+            nearest[other] = alike[found // len(_WITHIN)]
     real = (out[:, 0] != out[:, 1]) & (out[:, 1] != out[:, 2]) & (out[:, 2] != out[:, 0])
     return out[real], nearest[real]

@@ -166,17 +166,21 @@ def welded(parts: list[Patch]) -> Patch:
     joined = Patch(vertices[first], index.reshape(-1)[faces])
     edges = boundary(joined)
     loose = np.unique(edges)
-    on = {edge: found for edge in map(tuple, edges) if len(found := _between(joined.vertices, edge, loose))}
-    divided = []
-    for k, (a, b, c) in enumerate(joined.faces):
-        for p, q, r in ((a, b, c), (b, c, a), (c, a, b)):
-            if (p, q) in on:
-                chain = [p, *on[p, q], q]
-                divided.append((k, [(s, t, r) for s, t in pairwise(chain)]))
-                break
-    kept = np.delete(joined.faces, [k for k, _ in divided], axis=0)
-    new = np.array([face for _, fan in divided for face in fan], np.int64).reshape(-1, 3)
-    return compact(Patch(joined.vertices, np.concatenate([kept, new])))
+    on = {(p, q): found for p, q in edges.tolist() if len(found := _between(joined.vertices, (p, q), loose))}
+    divided = [part for face in joined.faces.tolist() for part in _divided(tuple(face), on)]
+    return compact(Patch(joined.vertices, np.array(divided, np.int64)))
+
+
+def _divided(
+    face: tuple[int, int, int], on: dict[tuple[int, int], NDArray[np.int64]]
+) -> list[tuple[int, int, int]]:
+    """A triangle in parts, by the vertices that lie on its edges."""
+    a, b, c = face
+    for p, q, r in ((a, b, c), (b, c, a), (c, a, b)):
+        if (p, q) in on:
+            way = [p, *on[p, q].tolist(), q]
+            return [part for s, t in pairwise(way) for part in _divided((s, t, r), on)]
+    return [face]
 
 
 def _between(vertices: Points, edge: tuple[int, int], others: NDArray[np.int64]) -> NDArray[np.int64]:

@@ -48,7 +48,8 @@ def foremost(triangles: NDArray[np.float64], spot: NDArray[np.float64]) -> float
 
 @pytest.mark.parametrize("name", NAMES)
 def test_eyes_are_open(name: str) -> None:
-    """An opening is smaller than the triangles it is cut out of: half of the cast had skin over it."""
+    """An opening is smaller than the triangles it is cut out of: nearly half of the cast had skin over a
+    fifth of it or more."""
     body = make_body(spec_of(name))
     head = Head(Figure(body.spec))
     corners = head.units(body.mesh.vertices.astype(float))[body.mesh.faces]

@@ -235,21 +235,20 @@ def _taken_after(
         all of its corners have that lie on no border, else that of the nearest old face
     """
     look, alone = looks
-    _, found = cKDTree((_WITHIN @ places).reshape(-1, 3)).query(triangles.mean(axis=1))
-    nearest = found // len(_WITHIN)
+    samples, middles = _WITHIN @ places, triangles.mean(axis=1)
+    _, found = cKDTree(samples.reshape(-1, 3)).query(middles)
+    guess = look[found // len(_WITHIN)]
     _, found = cKDTree(places.reshape(-1, 3)).query(triangles.reshape(-1, 3))
     inner = alone.reshape(-1)[found].reshape(-1, 3)
-    most, least = inner.max(axis=1), np.where(inner < 0, inner.max(axis=1)[:, None], inner).min(axis=1)
-    sure = (most >= 0) & (most == least)
-    taken = np.where(sure, most, look[nearest])
-    out = np.zeros((len(triangles), 3), np.int64)
+    most = inner.max(axis=1)
+    sure = (most >= 0) & ((inner < 0) | (inner == most[:, None])).all(axis=1)
+    taken = np.where(sure, most, guess)
+    out, nearest = np.zeros((len(triangles), 3), np.int64), np.zeros(len(triangles), np.int64)
     for name in np.unique(taken):
-        here, alike = np.flatnonzero(taken == name), np.flatnonzero(look == name)
+        here, alike = taken == name, np.flatnonzero(look == name)
         _, found = cKDTree(places[alike].reshape(-1, 3)).query(triangles[here].reshape(-1, 3))
         out[here] = corners[alike].reshape(-1)[found].reshape(-1, 3)
-        other = here[look[nearest[here]] != name]
-        if len(other):
-            _, found = cKDTree((_WITHIN @ places[alike]).reshape(-1, 3)).query(triangles[other].mean(axis=1))
-            nearest[other] = alike[found // len(_WITHIN)]
+        _, found = cKDTree(samples[alike].reshape(-1, 3)).query(middles[here])
+        nearest[here] = alike[found // len(_WITHIN)]
     real = (out[:, 0] != out[:, 1]) & (out[:, 1] != out[:, 2]) & (out[:, 2] != out[:, 0])
     return out[real], nearest[real]

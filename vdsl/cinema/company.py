@@ -21,6 +21,8 @@ from .track import project
 
 #: One who is nearer than the subject counts in full, one so many times as far away hardly any more.
 _FAR = 3.0
+#: Share of the frame along its borders in which nobody counts as shown in a place.
+_EDGE = 0.06
 #: What is to be seen of somebody in a place.
 _UPPER = SIGHT[:3]
 #: Metres before the camera from which on somebody is in its picture.
@@ -76,14 +78,14 @@ def company_shown(
 ) -> dict[str, Array]:
     """Of a place with people in it: ``interest``, how many of their heads are seen, ``face``, how they are
     turned to the camera, what is seen (:func:`~vdsl.cinema.takes.visibility`) of who is seen best, less of
-    who is there for a shorter time, and ``head_cropped`` and ``head_cut``, of the worst off. seen_from: as
-    above"""
+    who is there for a shorter time, and ``head_cropped`` and ``head_cut``, of the worst off; half of its
+    ``visibility`` is that everybody is seen. seen_from: as above"""
     people, focal = subject.company, takes.track.focal[:, at]
     here = np.stack([subject.holds(one)[at] for one in people], axis=1)  # [F, people]
     eyes = np.stack([one.landmarks["eyes"][at] for one in people], axis=1)
     xy, depth = project(eyes[None], camera, axes, focal, takes.track.sensor)
     half = np.array(takes.track.sensor) / focal[..., None]
-    seen = within(xy, depth, 0.02) & seen_from(eyes) & ~behind_heads(xy * half[:, :, None], depth)
+    seen = within(xy, depth, _EDGE) & seen_from(eyes) & ~behind_heads(xy * half[:, :, None], depth)
     counts = here.sum(axis=1)
     share = np.where(counts > 0, (seen & here).sum(axis=2) / np.maximum(counts, 1), 1.0)
     faces, cropped, cut = (np.zeros(len(camera)) for _ in range(3))
@@ -101,6 +103,7 @@ def company_shown(
         over = np.where(there, -found.of("top")[..., 1], 0.0).max(axis=1)
         cut = np.maximum(cut, np.clip(over, 0.0, 2.0))
     shown = mean_of(share, takes.window)
+    sight["visibility"] = (sight["visibility"] + shown) / 2
     return {"interest": shown, "face": faces, "head_cropped": cropped, "head_cut": cut} | sight
 
 

@@ -67,6 +67,10 @@ _A_WALK = 1.0  # metres that count as going somewhere
 #: What an end on nobody and nothing counts in ``empty``: of a camera that comes from somewhere one waits for
 #: what it finds; one that leaves somebody is to lead to something.
 ENDS_EMPTY = 0.3
+#: Where in the frame, −1..1, it is looked whether something near is in the way: of a subject beside it, of a place
+#: all over the picture but for its lowest part, where the floor and what stands there may begin near.
+_ASIDE = np.array([(x, y) for x in (-0.85, -0.3, 0.3, 0.85) for y in (-0.6, 0.5)])
+_ALL_OVER = np.array([(x, y) for x in np.linspace(-0.9, 0.9, 10) for y in (-0.5, 0.1, 0.6)])
 
 
 @dataclass(frozen=True, eq=False)
@@ -117,7 +121,8 @@ def measure(takes: Takes, subject: Subject, world: World, fps: float) -> Measure
     somebody = in_sight.any(axis=-1) | inside[:, :, names.index("eyes")] | shown.any(axis=-1)
     values["empty"] = np.minimum(1.0 - somebody.mean(axis=1) + ENDS_EMPTY * ~somebody[:, -1], 1.0)
     values["company_cut"] = company_cut(takes, subject, at, camera, axes, picture, unhidden)
-    values["foreground"] = _foreground(takes, world, at, camera, axes, picture, hidden)
+    looks = _ALL_OVER if subject.kind == "place" else _ASIDE
+    values["foreground"] = _foreground(takes, world, at, camera, axes, picture, hidden, looks)
     values |= _motion(track, takes.roll, fps)
     values["face"] = mean_of(turned(subject, at, camera), takes.window)
     if len(subject.members) > 1:
@@ -187,13 +192,13 @@ def _foreground(
     axes: Array,
     picture: Picture,
     hidden: Bools,
+    looks: Array,
 ) -> Array:
-    """Eight looks across the frame, half way to the subject, on every third sampled frame."""
+    """Looks [L, 2] across the frame, half way to the subject, on every third sampled frame."""
     some = np.arange(0, len(at), 3)
     track = takes.track
     depth = 0.5 * np.maximum(picture.depth[:, some, picture.names.index("pocket")], 0.2)
     half = depth[..., None, None] / (2 * track.focal[:, at[some], None, None])
-    looks = np.array([(x, y) for x in (-0.85, -0.3, 0.3, 0.85) for y in (-0.6, 0.5)])
     ax = axes[:, some, None]
     points = (
         camera[:, some, None]

@@ -21,6 +21,11 @@ SIGHT = ("eyes", "chin", "pocket", "waist", "hand_l", "hand_r", "knees")
 
 #: Metres over the floor somebody stands on by which one tells in which storey they are.
 _OVER_FLOOR = 0.5
+#: Height of what stands for a place, as a share of its diagonal. Up to so many metres a place is looked at for
+#: its own sake; from so many on it is where its people are.
+_SHARE, _SMALL, _LARGE = 0.36, 3.0, 5.0
+#: Of people that far apart, and so many metres around them, what has to be shown is so tall, at most so many metres.
+_TALL, _AROUND, _TALLEST = 0.3, 3.0, 8.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -193,10 +198,26 @@ def thing(
 def place(name: str, low: tuple[float, ...], high: tuple[float, ...], frames: int) -> Subject:
     """A room or area as a whole, by its bounds on the floor plan."""
     span = float(np.hypot(high[0] - low[0], high[1] - low[1]))
-    tall = float(np.clip(0.36 * span, 1.8, 5.0))
+    tall = float(np.clip(_SHARE * span, 1.8, _LARGE))
     centre = np.tile(((low[0] + high[0]) / 2, (low[1] + high[1]) / 2, low[2] + 0.9), (frames, 1))
     area = _box(name, "place", centre, np.full(frames, tall), np.zeros(frames), low[2])
     return replace(area, bounds=(low, high))
+
+
+def peopled(area: Subject, people: Sequence[Subject]) -> Subject:
+    """A place as it is shown with people in it: the larger it is, the nearer to them its middle, as nobody
+    looks at the middle of a long street for its own sake; and as tall as it takes to have them all in it."""
+    if not people:
+        return area
+    feet = np.array([one.position[:, :2].mean(axis=0) for one in people])
+    low, high = feet.min(axis=0), feet.max(axis=0)
+    near = float(np.clip((area.height - _SMALL) / (_LARGE - _SMALL), 0.0, 1.0))
+    spread = float(np.hypot(*(high - low)))
+    tall = max(area.height, near * min(_TALL * (spread + _AROUND), _TALLEST))
+    centre = area.landmarks["eyes"].copy()
+    centre[:, :2] += near * ((low + high) / 2 - centre[:, :2])
+    whole = _box(area.name, area.kind, centre, np.full(area.frames, tall), area.heading, area.floor)
+    return replace(whole, bounds=area.bounds)
 
 
 def _box(

@@ -14,7 +14,7 @@ from runtime.nav import level_at
 from runtime.world import Spot, World, WorldObject
 
 from ..cinema import rig_cinema, rig_paper
-from ..cinema.subject import Subject, group, person, place, thing
+from ..cinema.subject import Subject, group, peopled, person, place, thing
 from ..lang.ir import Shot, Target
 from ..library import Catalog
 from .focusing import Foci, Held
@@ -63,6 +63,7 @@ def subject_of(shot: Shot, story: StoryProposal, filming: Filming) -> Subject:
     others = [_person(name, story, filming) for name in story.performances if name not in known]
     if subject.kind == "place":
         others = [one for one in others if subject.holds(one).any()]
+        subject = peopled(subject, others)
     return replace(subject, company=tuple(others))
 
 

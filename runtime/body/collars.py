@@ -11,6 +11,9 @@ from .pieces import Piece, shade
 from .sheets import Grid, laid, plate
 from .spec import Colour
 
+#: How far a collar lies below the one it goes around, for how much wider it is, as a share of the height.
+_LOWER = 0.06
+
 
 def _ring(f: Figure, turn: Values, radius: Values, up: Values) -> Grid:
     """Points around the neck: [C, 3] of angles from the front, radii and heights above the collar's level."""
@@ -21,20 +24,30 @@ def _ring(f: Figure, turn: Values, radius: Values, up: Values) -> Grid:
 
 
 def collar(
-    f: Figure, solid: Field | None, colour: Colour, drop: float = 1.0, gap: float = 0.16, tone: float = 1.10
+    f: Figure,
+    solid: Field | None,
+    colour: Colour,
+    drop: float = 1.0,
+    gap: float = 0.16,
+    tone: float = 1.10,
+    over: float = 0.0,
+    spread: float = 1.0,
 ) -> list[Piece]:
     """A turned-down collar with points in front.
 
     solid: the garment it lies on; drop: how far it comes down; gap: half its opening in front, radians
+    over: how much wider than one that goes around the neck itself, as a share of its radius: it lies around
+    another collar, and lower, so that this one shows above it; spread: how far it falls outwards, less for
+    one that is to lie under another
     """
     assert solid is not None
-    h, r = f.p.height, neck_radius(f)
+    h, r = f.p.height, (1.0 + over) * neck_radius(f)
     turn = np.linspace(gap, np.pi, 13)
     ahead = 0.5 + 0.5 * np.cos(turn)
-    fold = (0.026 - 0.028 * ahead) * h
+    fold = (0.026 - 0.028 * ahead - _LOWER * over) * h
     point = np.exp(-(((turn - 0.55) / 0.38) ** 2))
-    fall = (drop * (0.034 + 0.020 * point) + 0.010 * (1.0 - ahead)) * h
-    wide = r * (1.30 + 0.16 * ahead)
+    fall = (drop * (0.034 + 0.020 * point) + 0.010 * spread * (1.0 - ahead)) * h
+    wide = r * (1.17 + spread * (0.13 + 0.16 * ahead))
     rows = [
         _ring(f, turn, 0.98 * r + 0.0 * turn, fold - 0.030 * h),
         _ring(f, turn, 1.08 * r + 0.0 * turn, fold - 0.004 * h),
@@ -43,7 +56,7 @@ def collar(
         _ring(f, turn + 0.10 * drop * point, wide, fold - fall),
     ]
     outer = np.stack(rows)
-    outer[3:] = _clear(solid, outer[3:], np.array([0.010, 0.006]) * h)
+    outer[3:] = _clear(solid, outer[3:], spread * np.array([0.010, 0.006]) * h)
     under = outer.copy()
     under[2:] = outer[2:] - np.array([0.0, 0.0, 0.006 * h])
     under[4] = laid(solid, outer[4], -0.002)

@@ -40,6 +40,7 @@ _LASH: Colour = (0.15, 0.10, 0.09)
 #: Of what is dark between parted lips.
 MOUTH: Colour = (0.25, 0.08, 0.08)
 _TEETH: Colour = (0.96, 0.94, 0.90)
+_ROW = 0.84  # how far to the side the upper teeth go, as a share of half of the mouth
 
 
 def head_pieces(f: Figure) -> list[Piece]:
@@ -137,12 +138,9 @@ def _mouth(head: Head) -> list[Piece]:
     # a bowl: at the corners of the lips nearly as far out as these, or one would look past it from aside
     rows = m + np.linspace(-0.105, 0.050, 7) * (1.0 - 0.7 * aside**2)
     back = _behind(head, half_ * aside, rows, 0.040 - 0.033 * aside, below=2)
-    teeth = _behind(
-        head,
-        np.linspace(0.0, 0.58 * half_, 5)[:, None],
-        m + np.linspace(0.0075, 0.050, 3),
-        np.linspace(0.022, 0.036, 3),
-    )
+    side = np.linspace(0.0, _ROW, 7)[:, None]
+    low = m + 0.0075 + 0.012 * (side / _ROW) ** 2  # the corner teeth are shorter
+    teeth = _behind(head, half_ * side, low + np.linspace(0.0, 0.0425, 3), np.linspace(0.022, 0.036, 3))
     return [
         Piece(back, MOUTH, "skin", None, rule="mouth"),
         Piece(teeth, _TEETH, "skin", None, rule="teeth"),

@@ -32,7 +32,7 @@ def _opened(
     down: how far the fronts part below the button
     """
     h = f.p.height
-    line = neckline(f, 0.030 * h, -0.003 * h, 0.012 * h)
+    line = neckline(f, 0.020 * h, -0.003 * h, 0.012 * h)
     piece = garment(
         f, grow * h, 0.16, hem, sleeve_length(f, 0.96), line, slope=0.05, tail=tail, rule=rule, faces=860
     )
@@ -53,10 +53,9 @@ def _opened(
     )
     pieces = [hemmed(q, 0.011 * h) for q in looks]
     shirt = shirt_front(f, button, down)
-    roll = collar(f, piece.solid, f.spec.top_color, 0.75, 0.62, tone)
-    inner = [
-        q.looking(q.colour, "shirt") for q in collar(f, shirt.solid, f.spec.shirt_color, 0.42, 0.14, 1.05)
-    ]
+    roll = collar(f, piece.solid, f.spec.top_color, 1.2, 0.62, tone, over=0.17)
+    under = collar(f, shirt.solid, f.spec.shirt_color, 0.42, 0.14, 1.05, spread=0.42)
+    inner = [q.looking(q.colour, "shirt") for q in under]
     return [*pieces, hemmed(shirt, 0.009 * h), *inner, *roll]
 
 
@@ -222,7 +221,7 @@ def shirt_front(f: Figure, button: float, down: float = 1.0) -> Piece:
     solid = trunk(f, 0.0066 * h, 0.10)
     patch = polygonise(solid, (-0.1 * h, -0.03, low), (0.2 * h, 0.12 * h, high), 0.0110 * h / 1.7)
     patch = half(simplify(patch, 260, solid))
-    cut, shown = neckline(f, 0.018 * h, -0.004 * h, 0.012 * h), front(f, button, 0.016 * h, down)
+    cut, shown = neckline(f, 0.002 * h, -0.004 * h, 0.012 * h), front(f, button, 0.016 * h, down)
     patch = clip(patch, both(cut, shown))
     return Piece(patch, f.spec.shirt_color, "shirt", solid, material="cloth")
 

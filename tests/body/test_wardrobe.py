@@ -9,6 +9,7 @@ import pytest
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
+from runtime.body.anatomy import Figure
 from runtime.body.build import Body, make_body
 from runtime.body.pieces import PARTS
 from runtime.body.proportions import make_skeleton
@@ -24,6 +25,11 @@ from runtime.body.spec import (
     TOP_KINDS,
     BodySpec,
 )
+from runtime.body.surface import Patch
+from runtime.body.tailoring import blazer
+from vdsl.lang.definitions.cast import CastDef
+from vdsl.library import Catalog
+from vdsl.stage.cast import body_spec
 
 from .poses import posed, turn
 
@@ -193,3 +199,36 @@ def test_a_long_beard_rests_on_the_chest_when_the_head_nods() -> None:
     tip = hair[np.argmin(body.mesh.vertices[hair, 2])]
     moved = posed(body, {"head": turn((0, 1, 0), 25.0)})[tip] - body.mesh.vertices[tip]
     assert np.linalg.norm(moved) < 0.06
+
+
+def _outermost(patch: Patch, axis: NDArray[np.float64], way: NDArray[np.float64]) -> float:
+    """How far from ``axis`` [3] a ray along the floor plan leaves a surface for good; −inf where it meets none."""
+    a, b, c = (patch.vertices[patch.faces[:, k]] for k in range(3))
+    across = np.cross(way, c - a)
+    size = ((b - a) * across).sum(1)
+    start = axis - a
+    with np.errstate(divide="ignore", invalid="ignore"):
+        u = (start * across).sum(1) / size
+        turned = np.cross(start, b - a)
+        v = (way * turned).sum(1) / size
+        far = ((c - a) * turned).sum(1) / size
+    return float(far[(u >= 0) & (v >= 0) & (u + v <= 1) & (far > 0)].max(initial=-np.inf))
+
+
+@pytest.mark.parametrize("name", ["businesswoman", "businessman", "doctor", "detective", "pirate"])
+def test_a_jackets_collar_lies_around_the_shirts(name: str) -> None:
+    """Both went around the neck at one radius, and came through each other in tatters."""
+    cast = Catalog().get("cast", name)
+    assert isinstance(cast, CastDef)
+    figure = Figure(body_spec(cast))
+    *_, inner, roll = blazer(figure)
+    met = 0
+    for turn in np.linspace(0.9, 3.0, 12):
+        way = np.array([np.cos(turn), np.sin(turn), 0.0])
+        for up in np.linspace(1.10, 1.22, 9):
+            axis = np.array([figure.joint("neck")[0], 0.0, figure.level(up)])
+            inside, outside = (_outermost(piece.patch, axis, way) for piece in (inner, roll))
+            if np.isfinite(inside) and np.isfinite(outside):
+                met += 1
+                assert outside > inside + 0.0005, (turn, up)
+    assert met > 20

@@ -163,6 +163,6 @@ def trace(
             else:
                 key = 0.08 + 0.92 * np.maximum(key, 0.42 * toned(n3 @ fill, tones))
             lit = base[f] * (ambient + np.array(light.sun_color) * key[:, None])
-            haze = np.clip((z[nearer] - 2.0) * 0.04, 0, 1)[:, None] * (0.36 if still else 0.15)
+            haze = np.clip((z[nearer] - 2.0) * 0.04, 0, 1)[:, None] * (0.27 if still else 0.12)
             color[nearer] = lit + (horizon - lit) * haze
     return Traced(depth, ids, to_encoded(exposed(color)) * 255, sure, slack)

@@ -54,6 +54,9 @@ from .rows import EVERY
 from .sheet import fold_kernel
 
 CLAY_DEPTH = 1.9  # how much deeper the corners are in clay
+#: The air: from so many metres on it grows by so much a metre, and takes at most so much of the colour of sets
+#: and of people.
+CLEAR, THICKENS, HAZE_SET, HAZE_PEOPLE = 2.0, 0.04, 0.27, 0.12
 ABRUPT = 0.05  # difference of key light over a few pixels, above which each is looked up
 
 
@@ -311,7 +314,7 @@ def shading_kernels(style: Style) -> SimpleNamespace:
                                     )
                                 out = base * (ambient + sun_color * (0.08 + 0.92 * key_light))
                                 out += base * lamplight(eye + ray * depth, nn, lamps)
-                            out += (horizon - out) * (bounded((depth - 2.0) * 0.04, 0.0, 1.0) * 0.15)
+                            out += (horizon - out) * (bounded((depth - CLEAR) * THICKENS, 0.0, 1.0) * HAZE_PEOPLE)
                             if xx > before + 1 and ti.abs(key_light - key_before) > ABRUPT:
                                 xx = before + 1
                             else:
@@ -387,7 +390,7 @@ def shading_kernels(style: Style) -> SimpleNamespace:
                                 out = base * 2.0 + 0.2
                                 if material == GLASS:
                                     out = glazed(base, ray, eye + ray * depth)
-                                out += (horizon - out) * (bounded((depth - 2.0) * 0.04, 0.0, 1.0) * 0.36)
+                                out += (horizon - out) * (bounded((depth - CLEAR) * THICKENS, 0.0, 1.0) * HAZE_SET)
                                 picture[i] = developed(out, film)
                                 edge[i] = mark
                         else:
@@ -444,7 +447,7 @@ def shading_kernels(style: Style) -> SimpleNamespace:
                                                 kind_end = chart[
                                                     begin[t] + cell_end[1] * side[t] + cell_end[0]
                                                 ]
-                                    haze_end = bounded((depth - 2.0) * 0.0144, 0.0, 0.36)
+                                    haze_end = bounded((depth - CLEAR) * (THICKENS * HAZE_SET), 0.0, HAZE_SET)
                                     if k == 0:
                                         begin_at = end_at
                                         q_begin, cell = q_end, cell_end

@@ -20,7 +20,7 @@ from .together import behind_heads, turned_among
 from .track import project
 
 #: One who is nearer than the subject counts in full, one so many times as far away hardly any more.
-_FAR = 3.0
+_FAR = 6.0
 #: Share of the frame along its borders in which nobody counts as shown in a place.
 _EDGE = 0.06
 #: What is to be seen of somebody in a place.

@@ -31,6 +31,7 @@ MOST = (
     ("visibility", "walk_missed", 0.5, 1.0),
     ("framing", "head_cut", 0.03, 0.4),
     ("framing", "feet_cut", 0.03, 0.4),
+    ("framing", "head_cropped", 0.6, 1.0),
     ("framing", "size_error", 0.1, 0.4),
     ("framing", "empty", 0.25, 0.9),
     ("framing", "company_cut", 0.5, 1.0),

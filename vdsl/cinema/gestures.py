@@ -1,4 +1,4 @@
-"""Whether one sees what hands do, and whether they and the arms are in the way of the face.
+"""Whether one sees what hands do, how clearly, and whether they and the arms are in the way of the face.
 
 Assumes landmarks of a posed body. Hands that hang or swing beside it do nothing one has to see.
 """
@@ -10,11 +10,14 @@ from numpy.typing import NDArray
 
 from .framing import Array
 from .subject import Subject
-from .takes import Bools, Takes, mean_of
+from .takes import Bools, Picture, Takes, mean_of
 from .vectors import dot, length
 
 _HANGS = 0.26  # of the standing height from the collar down, as far as idle hands are at least
 _CHEST = 0.075  # half of the trunk's breadth, of the standing height
+#: How far beside the line from waist to chin a hand is in the picture that hardly stands out from the body, and one
+#: that does so plainly, of the standing height.
+_WITHIN, _PLAIN = 0.06, 0.24
 #: Of an arm: its radius, and what a hand reaches beyond the wrist, of the standing height.
 _ARM, _HAND = 0.026, 0.075
 #: Metres before the face at which a line of sight ends: less is the skin itself.
@@ -34,20 +37,62 @@ def hands_missed(takes: Takes, subject: Subject, at: NDArray[np.int64], camera: 
     """
     if subject.kind != "person":
         return np.zeros(len(camera))
-    marks = {name: subject.landmarks[name][at] for name in ("collar", "waist", "hand_l", "hand_r")}
-    trunk = marks["waist"] - marks["collar"]
-    down = trunk / np.maximum(length(trunk), 1e-6)[..., None]
-    at_work, seen = [], []
+    collar = subject.landmarks["collar"][at]
+    trunk = subject.landmarks["waist"][at] - collar
+    works, seen = _at_work(subject, at), []
     for side, name in enumerate(("hand_l", "hand_r")):
-        works = dot(marks[name] - marks["collar"], down) < _HANGS * subject.height
-        before = _apart(camera, 0.93 * (marks[name][None] - camera), marks["collar"][None], trunk[None])
-        at_work.append(works)
-        seen.append(works[None] & shown[..., side] & (before > _CHEST * subject.height))
-    asked = (at_work[0] | at_work[1])[None] & takes.window
+        hand = subject.landmarks[name][at]
+        before = _apart(camera, 0.93 * (hand[None] - camera), collar[None], trunk[None])
+        seen.append(works[:, side] & shown[..., side] & (before > _CHEST * subject.height))
+    asked = works.any(axis=1)[None] & takes.window
     found = (seen[0] | seen[1]) & takes.window
-    sizes = np.array([s.lower in _SHOW_HANDS for s in takes.sizes])
     missed = 1.0 - found.sum(axis=1) / np.maximum(asked.sum(axis=1), 1)
-    return np.where(sizes & asked.any(axis=1), missed, 0.0)
+    return np.where(_shows_hands(takes) & asked.any(axis=1), missed, 0.0)
+
+
+def gesture_lost(
+    takes: Takes, subject: Subject, at: NDArray[np.int64], picture: Picture, shown: Bools
+) -> Array:
+    """How little [P] of a person's hands at work stands out from the body in the picture, as silhouettes are judged:
+    0 where one of them is plainly beside it all the time, 1 where both are before it, hidden or out of the frame.
+
+    shown: [P, F, 2] as above. 0 for sizes too close to show hands, for what is no person, and where hands do nothing.
+    """
+    if subject.kind != "person":
+        return np.zeros(len(picture.xy))
+    works = _at_work(subject, at)
+    # metres across the picture at the body's distance
+    depth = np.maximum(picture.depth[:, :, picture.names.index("pocket")], 0.05)
+    metres = depth[..., None] * np.array(takes.track.sensor) / takes.track.focal[:, at, None]
+    waist, chin = picture.of("waist") * metres, picture.of("chin") * metres
+    clear = np.zeros(depth.shape)
+    for side, name in enumerate(("hand_l", "hand_r")):
+        beside = _off(picture.of(name) * metres, waist, chin) / subject.height
+        plain = np.clip((beside - _WITHIN) / (_PLAIN - _WITHIN), 0.0, 1.0)
+        clear = np.maximum(clear, np.where(works[:, side] & shown[..., side], plain, 0.0))
+    asked = works.any(axis=1)[None] & takes.window
+    return np.where(_shows_hands(takes) & asked.any(axis=1), 1.0 - mean_of(clear, asked), 0.0)
+
+
+def _at_work(subject: Subject, at: NDArray[np.int64]) -> Bools:
+    """Whether the left hand and the right one are higher than hands that hang, bool [F, 2]."""
+    collar = subject.landmarks["collar"][at]
+    trunk = subject.landmarks["waist"][at] - collar
+    down = trunk / np.maximum(length(trunk), 1e-6)[..., None]
+    hands = [subject.landmarks[name][at] - collar for name in ("hand_l", "hand_r")]
+    return np.stack([dot(hand, down) < _HANGS * subject.height for hand in hands], axis=1)
+
+
+def _shows_hands(takes: Takes) -> Bools:
+    """Which takes [P] are of a size that shows hands at work."""
+    return np.array([s.lower in _SHOW_HANDS for s in takes.sizes])
+
+
+def _off(point: Array, begin: Array, end: Array) -> Array:
+    """Distance [P, F] of points [P, F, 2] to lines from ``begin`` to ``end``."""
+    way = end - begin
+    along = np.clip(dot(point - begin, way) / np.maximum(dot(way, way), 1e-9), 0.0, 1.0)
+    return length(point - begin - along[..., None] * way)
 
 
 def face_covered(takes: Takes, subject: Subject, at: NDArray[np.int64], camera: Array) -> Array:

@@ -19,7 +19,7 @@ from . import space
 from .company import company_cut, company_shown
 from .composition import framing, size_error
 from .framing import Array
-from .gestures import face_covered, hands_missed
+from .gestures import face_covered, gesture_lost, hands_missed
 from .score import geometry_score as geometry_score
 from .sight import backdrop_gaps, clear_lines, clear_of_people, hidden_walls
 from .subject import SIGHT, Subject
@@ -49,6 +49,7 @@ MEASURES = (
     # and more by ENDS_EMPTY where the last frame is such a one
     "walk_missed",  # share of the way the subject goes on which nothing of it is seen; 0 for a step or two
     "hands_missed",  # share of the time hands are at work in which neither is seen; 0 for close-ups
+    "gesture_lost",  # how little hands at work stand out from the body in the picture; 0 for close-ups
     "face_covered",  # share of the face that the subject's own arms hide, beyond what they have to
     "company_cut",  # share of the time somebody beside the subject is in the picture without their head
     "foreground",  # share of the picture covered by something much nearer than the subject
@@ -115,6 +116,7 @@ def measure(takes: Takes, subject: Subject, world: World, fps: float) -> Measure
     in_sight = inside[:, :, sight_index] & seen
     values["walk_missed"] = _missed(points[:, names.index("waist")], in_sight)
     values["hands_missed"] = hands_missed(takes, subject, at, camera, in_sight[:, :, hands])
+    values["gesture_lost"] = gesture_lost(takes, subject, at, picture, in_sight[:, :, hands])
     values["face_covered"] = face_covered(takes, subject, at, camera)
     shown = _shown(takes, world, at, camera, axes, hidden, others)
     values["interest"] = _interest(takes, shown)

@@ -30,6 +30,7 @@ PENALTIES = {
     "walk_missed": 0.4,
     "head_cropped": 0.2,
     "hands_missed": 0.15,
+    "gesture_lost": 0.1,
     "company_cut": 0.25,
 }
 

@@ -47,6 +47,7 @@ NOTES = {
     "empty": Note("share", "there is always something to see", 0.0, 0.05),
     "walk_missed": Note("share", "little of the walk is missed", 0.0, 0.3),
     "hands_missed": Note("share", "little of what hands do is missed", 0.0, 0.5),
+    "gesture_lost": Note("share", "what hands do stands out from the body", 0.0, 0.7),
     "face_covered": Note("share", "no arm of theirs is before the face", 0.0, 0.1),
     "company_cut": Note("share", "nobody else is seen without their head", 0.0, 0.3),
     "foreground": Note("share", "nothing near is in the way", 0.0, 0.1),
@@ -79,6 +80,11 @@ _COMPARED = {
     "empty": ("less empty", "emptier", "empty"),
     "walk_missed": ("less of the walk is missed", "more of the walk is missed", "walk_missed"),
     "hands_missed": ("less is missed of what hands do", "more is missed of what hands do", "hands_missed"),
+    "gesture_lost": (
+        "what hands do stands out more",
+        "what hands do stands out less from the body",
+        "gesture_lost",
+    ),
     "company_cut": ("others less cut off", "others more cut off", "company_cut"),
     "head_cropped": (
         "head and body less cut at the ends",

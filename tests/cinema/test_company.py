@@ -8,13 +8,14 @@ import numpy as np
 from filmset import shot, skeleton, standing, story, world
 from numpy.typing import NDArray
 
+from vdsl.cinema.flaws import flaws
 from vdsl.cinema.measures import measure
 from vdsl.cinema.sizes import size_of
-from vdsl.cinema.subject import place
+from vdsl.cinema.subject import peopled, place
 from vdsl.cinema.takes import Takes
 from vdsl.cinema.track import CameraTrack, look_at_rotation
 from vdsl.propose.cameras import Filming, propose_cameras
-from vdsl.propose.subjects import subject_of
+from vdsl.propose.subjects import performed, subject_of
 from vdsl.propose.types import STILL, StoryProposal
 
 BODY, FRAMES = skeleton(1.7), 24
@@ -126,11 +127,42 @@ def test_in_a_place_heads_and_chests_are_to_be_seen_and_legs_need_not() -> None:
     assert [wall[name] for name in seen] == [0.0, 0.0, 0.0]
 
 
-def test_one_of_two_in_a_place_is_enough_to_be_seen_and_both_are_better() -> None:
+def test_a_place_is_to_show_everybody_in_it() -> None:
     both, far = in_a_place(two((0.0, 1.2)), (5.0, 0.6, 1.5)), in_a_place(two((3.9, 3.9)), (5.0, 0.6, 1.5))
-    assert both["interest"] == 1.0
+    assert both["interest"] == both["visibility"] == 1.0
     assert far["interest"] == 0.5, "Ben is beside the picture"
-    assert far["visibility"] == far["head_visible"] == far["ends_visible"] == 1.0
+    assert far["visibility"] == 0.75
+    assert far["head_visible"] == far["ends_visible"] == 1.0, "of who is seen best"
+    assert not flaws(both)["visibility"].any()
+    assert flaws(far)["visibility"].all()
+
+
+def test_a_large_place_is_shown_where_its_people_are() -> None:
+    corner = two((14.0, 3.0))
+    anna, ben = (performed(name, acted, BODY) for name, acted in corner.performances.items())
+    street = place("street", (-30.0, -8.0, 0.0), (30.0, 8.0, 3.0), FRAMES)
+    room = place("room", (-3.0, -2.0, 0.0), (3.0, 2.0, 2.6), FRAMES)
+    middle = peopled(street, (anna, ben)).landmarks["eyes"]
+    np.testing.assert_allclose(middle[:, :2], np.tile((7.0, 1.5), (FRAMES, 1)), atol=0.2)
+    np.testing.assert_allclose(middle[:, 2], street.landmarks["eyes"][:, 2])
+    assert peopled(street, (anna, ben)).height > street.height, "they stand far apart"
+    assert peopled(street, (anna,)).height == street.height
+    assert peopled(street, ()) is street
+    still = peopled(room, (anna,))
+    np.testing.assert_allclose(still.landmarks["eyes"], room.landmarks["eyes"])
+    assert still.bounds == room.bounds
+
+
+def test_a_post_in_the_middle_of_a_place_is_in_the_way() -> None:
+    """It stands where looks at the sides of a person do not go."""
+    post = ((2.8, 0.6, 1.5, 0.15, 0.25, 1.5, 0.0),)
+    area, told = place("hall", (-4.0, -4.0, 0.0), (4.0, 4.0, 3.0), FRAMES), two((0.0, 1.2))
+    takes = takes_of("wide", "place", (5.0, 0.6, 1.5), (0.0, 0.6, 1.2))
+    free, barred = (measure(takes, area, world(boxes=b), 24.0).values["foreground"] for b in ((), post))
+    assert free == 0.0
+    assert barred > 0.05
+    of_her = subject_of(shot(scale="wide"), told, FILMING)
+    assert measure(takes, of_her, world(boxes=post), 24.0).values["foreground"] == 0.0
 
 
 def test_of_a_room_with_people_faces_are_proposed_first() -> None:

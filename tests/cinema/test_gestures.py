@@ -7,9 +7,11 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from vdsl.cinema.gestures import _apart, face_covered
+from vdsl.cinema.gestures import _apart, face_covered, gesture_lost
+from vdsl.cinema.sizes import size_of
 from vdsl.cinema.subject import Subject
-from vdsl.cinema.takes import Takes
+from vdsl.cinema.takes import Takes, pictured
+from vdsl.cinema.track import CameraTrack, camera_axes, look_at_rotation
 from vdsl.pipeline.compile import Act
 from vdsl.pipeline.trial import stage_script
 from vdsl.propose.cameras import propose_cameras
@@ -43,6 +45,39 @@ def test_from_behind_one_does_not_see_what_hands_do() -> None:
 def test_hands_that_swing_or_are_not_in_a_close_up_are_not_missed() -> None:
     for line, camera in (("(anna walk there)", "static full eye-level"), ("(anna clap)", "static close-up")):
         assert {c.measures["hands_missed"] for c in filmed(line, camera)[1]} == {0.0}, line
+
+
+def test_what_hands_do_is_filmed_from_where_it_stands_out_from_the_body() -> None:
+    """An arm that points at the camera is lost before the body; from aside it is plain."""
+    act, cameras = filmed("(anna stretch)", "static full eye-level")
+    told = tell(act.state, act.line, act.filming, shot=act.line.shots[0]).proposals[0]
+    body = subject_of(act.line.shots[0], told, act.filming)
+    at = np.arange(0, body.frames, 8)
+    before = {"hand_l": 0.5 * body.face, "hand_r": 0.5 * body.face}
+    marks = body.landmarks
+    pointing = replace(body, landmarks=marks | {k: marks["collar"] + v for k, v in before.items()})
+    track = cameras[0].track
+    left = np.cross((0.0, 0.0, 1.0), body.face)
+    shown = np.ones((2, len(at), 2), bool)
+    places = np.stack([marks["pocket"] + 4.0 * way for way in (body.face, left)])
+    ways = look_at_rotation(places, np.stack([marks["pocket"]] * 2), 0.0)
+    both = CameraTrack(places, ways, np.full(places.shape[:2], 35.0), places, track.sensor)
+    sizes = (size_of("person", "full"),) * 2
+    takes = Takes(both, sizes, np.ones((2, len(at)), bool), np.zeros(2, np.int64), 0.0, False, ())
+    camera, axes = places[:, at], camera_axes(ways[:, at])
+
+    def lost(one: Subject, takes: Takes = takes) -> NDArray[np.float64]:
+        return gesture_lost(takes, one, at, pictured(takes, one, at, camera, axes), shown)
+
+    ahead, aside = lost(pointing)
+    assert ahead > 0.9
+    assert aside < 0.1
+    hanging = replace(body, landmarks=marks | {k: marks["thigh"] for k in before})
+    assert (lost(hanging) == 0.0).all(), "they do nothing"
+    near = replace(takes, sizes=(size_of("person", "close-up"),) * 2)
+    assert (lost(pointing, near) == 0.0).all(), "a close-up shows no hands"
+    hidden = np.array([c.measures["hands_missed"] == 1.0 for c in cameras])
+    assert all(c.measures["gesture_lost"] > 0.99 for c, h in zip(cameras, hidden, strict=True) if h)
 
 
 def test_a_line_of_sight_keeps_its_distance_to_the_trunk() -> None:

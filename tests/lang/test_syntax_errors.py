@@ -31,3 +31,12 @@ def test_the_form_shown_as_right_is_right(start: str) -> None:
     script, report = parse(Source("x.vds", form + "\n"))
     assert not report.diagnostics
     assert len(script.statements) == 1
+
+
+def test_a_name_alone_is_told_what_to_say_of_it() -> None:
+    _, report = parse(Source("x.vds", "anna\nanna walk door\n"))
+    alone, acts = report.diagnostics
+    assert alone.code == acts.code == "VDS013"
+    assert alone.span.text == "anna"
+    assert "`anna at door`" in (alone.help or "")
+    assert acts.fix == "(anna walk door)"

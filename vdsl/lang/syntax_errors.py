@@ -215,11 +215,17 @@ def unknown_statement(line: Span, word: str | None, report: Report) -> None:
     text = line.text
     span = Span(line.source, line.start, line.start + len(word or text[:1]))
     meant = nearest(word, STATEMENT_WORDS) if word else None
-    first = text.split("\n")[0]
+    first = text.split("\n")[0].strip()
+    if word and meant is None and first == word:
+        report.error(
+            "VDS013", span, label="no line begins like this",
+            help=f"where somebody is when the scene opens is said by `{word} at door`, what they do by `({word} wave)`",
+        )  # fmt: skip
+        return
     if word and meant is None and re.fullmatch(r"[\w .-]{3,80}", first):
         report.error(
             "VDS013", Span(line.source, line.start, line.start + len(first)), label="no line begins like this",
-            help=f"what someone does stands in parentheses: `({first.strip()})`", fix=f"({first.strip()})",
+            help=f"what someone does stands in parentheses: `({first})`", fix=f"({first})",
         )  # fmt: skip
         return
     if text.startswith("*") or text.startswith("-"):

@@ -21,6 +21,7 @@ from .track import project
 
 #: One who is nearer than the subject counts in full, one so many times as far away hardly any more.
 _FAR = 6.0
+_ENDS = 0.3
 #: Share of the frame along its borders in which nobody counts as shown in a place.
 _EDGE = 0.06
 #: What is to be seen of somebody in a place.
@@ -40,7 +41,8 @@ def company_cut(
     picture: Picture,
     seen_from: Callable[[Array], Bools],
 ) -> Array:
-    """Share [P] of the time in which somebody beside the subject is in the picture without their head.
+    """Share [P] of the time in which somebody beside the subject is in the picture without their head, and more
+    by :data:`_ENDS` where the last frame is such a one: it is what is remembered of a take.
 
     seen_from: which of points [F, K, 3] no wall or thing hides, bool [P, F, K]
     """
@@ -58,7 +60,7 @@ def company_cut(
             cut &= seen_from(points[:, 2:]).any(axis=2)
             near = (_FAR - depth[:, :, 2] / own) / (_FAR - 1.0)
             out = np.maximum(out, cut * np.clip(near, 0.0, 1.0))
-    return np.asarray(out.mean(axis=1))
+    return np.asarray(np.minimum(out.mean(axis=1) + _ENDS * out[:, -1], 1.0))
 
 
 def _beside(xy: Array, depth: Array, aside: Array) -> Bools:

@@ -51,7 +51,8 @@ MEASURES = (
     "hands_missed",  # share of the time hands are at work in which neither is seen; 0 for close-ups
     "gesture_lost",  # how little hands at work stand out from the body in the picture; 0 for close-ups
     "face_covered",  # share of the face that the subject's own arms hide, beyond what they have to
-    "company_cut",  # share of the time somebody beside the subject is in the picture without their head
+    "company_cut",  # share of the time somebody beside the subject is in the picture without their head, and more
+    # where the last frame is such a one
     "foreground",  # share of the picture covered by something much nearer than the subject
     "face",  # cosine between face and direction to the camera: 1 frontal, 0 profile, −1 from behind
     "clearance",  # metres from the camera to the nearest solid or person, at most 1

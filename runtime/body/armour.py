@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from .anatomy import ARM_FRAME, Figure, arm_point, limb, trunk
+from .anatomy import ARM_FRAME, Figure, arm_point, leg_loft, limb, trunk
 from .field import Field, Points, Values, smooth_min
 from .outfit import (
     above,
@@ -54,7 +54,7 @@ def armour(f: Figure) -> list[Piece]:
 
 def _breast(f: Figure) -> Field:
     h = f.p.height
-    body = trunk(f, 0.0220 * h, 0.10)
+    body, leg = trunk(f, 0.0220 * h, 0.10), leg_loft(f, 0.0220 * h)  # all around the mail
     skirt = skirt_tail(f, f.level(-0.30) - 0.06 * h, 0.10)
 
     def field(p: Points) -> Values:
@@ -65,7 +65,8 @@ def _breast(f: Figure) -> Field:
             * np.sin((p[:, 2] - f.level(0.25)) * 2 * np.pi / (0.045 * h))
             * (p[:, 2] < f.level(0.25))
         )
-        return smooth_min(body(p), skirt(p) - 0.010 * h, 0.02 * h) - keel - lames
+        below = smooth_min(skirt(p) - 0.010 * h, leg(p), 0.03 * h)
+        return smooth_min(body(p), below, 0.02 * h) - keel - lames
 
     return field
 

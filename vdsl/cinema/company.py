@@ -15,13 +15,15 @@ from numpy.typing import NDArray
 from .composition import broken
 from .framing import Array
 from .subject import SIGHT, Subject
-from .takes import Bools, Picture, Takes, mean_of, pictured, visibility, within
+from .takes import Bools, Picture, Takes, mean_of, pictured, turned, visibility, within
 from .together import behind_heads, turned_among
 from .track import project
 
 #: One who is nearer than the subject counts in full, one so many times as far away hardly any more.
 _FAR = 6.0
-_ENDS = 0.3
+_ENDS, _HALF = 0.3, 0.5
+#: Cosine between a face and the direction to the camera below which one sees the back of a head.
+_FACELESS = -0.2
 #: Share of the frame along its borders in which nobody counts as shown in a place.
 _EDGE = 0.06
 #: What is to be seen of somebody in a place.
@@ -42,25 +44,36 @@ def company_cut(
     seen_from: Callable[[Array], Bools],
 ) -> Array:
     """Share [P] of the time in which somebody beside the subject is in the picture without their head, and more
-    by :data:`_ENDS` where the last frame is such a one: it is what is remembered of a take.
+    by :data:`_ENDS` where the last frame is such a one: it is what is remembered of a take. Who is halved by a side
+    of the frame, head and all, counts for :data:`_HALF` of that.
 
     seen_from: which of points [F, K, 3] no wall or thing hides, bool [P, F, K]
     """
-    out = np.zeros(camera.shape[:2])
+    out, halves = np.zeros(camera.shape[:2]), np.zeros(camera.shape[:2])
     own = np.maximum(picture.depth[:, :, picture.names.index("pocket")], _BEFORE)
     for one in subject.company:
-        marks = ("eyes", "chin", "pocket", "waist")
+        marks = ("eyes", "chin", "crown", "pocket", "waist")
         points = np.stack([one.landmarks[name][at] for name in marks], axis=1)
         xy, depth = project(points[None], camera, axes, takes.track.focal[:, at], takes.track.sensor)
-        wide = takes.track.focal[:, at] / takes.track.sensor[0] / np.maximum(depth[:, :, 2], _BEFORE)
-        head = _beside(xy[:, :, :2], depth[:, :, :2], _HEAD_HALF * wide).all(axis=2)
-        body = _beside(xy[:, :, 2:], depth[:, :, 2:], _BODY_HALF * wide).any(axis=2)
-        cut = body & ~head & (depth[:, :, 2] > _BEFORE)
-        if cut.any():
-            cut &= seen_from(points[:, 2:]).any(axis=2)
-            near = (_FAR - depth[:, :, 2] / own) / (_FAR - 1.0)
-            out = np.maximum(out, cut * np.clip(near, 0.0, 1.0))
-    return np.asarray(np.minimum(out.mean(axis=1) + _ENDS * out[:, -1], 1.0))
+        far = depth[:, :, marks.index("pocket")]
+        wide = takes.track.focal[:, at] / takes.track.sensor[0] / np.maximum(far, _BEFORE)
+        inside = _beside(xy[:, :, :3], depth[:, :, :3], _HEAD_HALF * wide)
+        # a face may be cut above the brow; without one, what is left of a head is not told from a collar
+        head = inside[:, :, :2].all(axis=2) & (inside[:, :, 2] | (turned(one, at, camera) > _FACELESS))
+        body = _beside(xy[:, :, 3:], depth[:, :, 3:], _BODY_HALF * wide).any(axis=2) & (far > _BEFORE)
+        if body.any():
+            body &= seen_from(points[:, 3:]).any(axis=2)
+            near = np.clip((_FAR - far / own) / (_FAR - 1.0), 0.0, 1.0)
+            out = np.maximum(out, (body & ~head) * near)
+            halves = np.maximum(halves, (body & head) * near * _halved(xy[:, :, 3, 0], _BODY_HALF * wide))
+    cut = out.mean(axis=1) + _ENDS * out[:, -1]
+    return np.asarray(np.clip(np.maximum(cut, _HALF * np.maximum(out, halves).mean(axis=1)), 0.0, 1.0))
+
+
+def _halved(x: Array, half: Array) -> Array:
+    """0 where a breadth about ``x`` [P, F] is in the frame or out of it, 1 where one of its sides halves it."""
+    share = np.clip((np.minimum(x + half, 1.0) - np.maximum(x - half, 0.0)) / (2.0 * half), 0.0, 1.0)
+    return np.asarray(4.0 * share * (1.0 - share))
 
 
 def _beside(xy: Array, depth: Array, aside: Array) -> Bools:

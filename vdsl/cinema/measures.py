@@ -69,6 +69,8 @@ _A_WALK = 1.0  # metres that count as going somewhere
 #: What an end on nobody and nothing counts in ``empty``: of a camera that comes from somewhere one waits for
 #: what it finds; one that leaves somebody is to lead to something.
 ENDS_EMPTY = 0.3
+#: What is in the way within a share of the distance to the subject, and how much it counts; sampled frames looked at.
+_NEAR, _LOOKED_AT = ((0.5, 1.0), (0.72, 0.4)), 6
 #: Where in the frame, −1..1, it is looked whether something near is in the way: of a subject beside it, of a place
 #: all over the picture but for its lowest part, where the floor and what stands there may begin near.
 _ASIDE = np.array([(x, y) for x in (-0.85, -0.3, 0.3, 0.85) for y in (-0.6, 0.5)])
@@ -197,22 +199,26 @@ def _foreground(
     hidden: Bools,
     looks: Array,
 ) -> Array:
-    """Looks [L, 2] across the frame, half way to the subject, on every third sampled frame."""
-    some = np.arange(0, len(at), 3)
+    """Looks [L, 2] across the frame on some of the sampled frames: whether something is in the way half way to the
+    subject, and for less, on the last of the way to it."""
+    some = np.unique((np.arange(_LOOKED_AT) * ((len(at) - 1) / (_LOOKED_AT - 1))).round().astype(int))
     track = takes.track
-    depth = 0.5 * np.maximum(picture.depth[:, some, picture.names.index("pocket")], 0.2)
-    half = depth[..., None, None] / (2 * track.focal[:, at[some], None, None])
-    ax = axes[:, some, None]
-    points = (
-        camera[:, some, None]
-        + depth[..., None, None] * ax[..., 2, :]
-        + half * track.sensor[0] * looks[:, :1] * ax[..., 0, :]
-        + half * track.sensor[1] * looks[:, 1:] * ax[..., 1, :]
-    )
-    seen = clear_lines(world.solids, camera[:, some], points, hidden, takes.ignore)
     others = [(foot[at[some]], crown[at[some]], radius) for foot, crown, radius in takes.others]
-    seen &= clear_of_people(camera[:, some], points, others)
-    return np.asarray(1.0 - seen.mean(axis=(1, 2)))
+    far = np.maximum(picture.depth[:, some, picture.names.index("pocket")], 0.2)
+    ax, blocked = axes[:, some, None], np.zeros((len(camera), len(some), len(looks)))
+    for share, counts in _NEAR:
+        depth = share * far
+        half = depth[..., None, None] / (2 * track.focal[:, at[some], None, None])
+        points = (
+            camera[:, some, None]
+            + depth[..., None, None] * ax[..., 2, :]
+            + half * track.sensor[0] * looks[:, :1] * ax[..., 0, :]
+            + half * track.sensor[1] * looks[:, 1:] * ax[..., 1, :]
+        )
+        seen = clear_lines(world.solids, camera[:, some], points, hidden, takes.ignore)
+        seen &= clear_of_people(camera[:, some], points, others)
+        blocked = np.maximum(blocked, np.where(seen, 0.0, counts))
+    return np.asarray(blocked.mean(axis=(1, 2)))
 
 
 def _motion(track: CameraTrack, roll: float, fps: float) -> dict[str, Array]:

@@ -14,6 +14,8 @@ from vdsl.lang.definitions.action import ActionDef, read_action
 from vdsl.lang.diagnostics import Report
 from vdsl.lang.parse import parse_definition
 from vdsl.lang.source import Source
+from vdsl.library import Catalog
+from vdsl.pipeline.script import check_source
 from vdsl.stage.actions import build_clip
 
 WANTED = (
@@ -246,3 +248,41 @@ def test_hanging_arms_keep_clear_of_the_body() -> None:
         hand, hip = joint(motion, "a", f"hand_{s}"), joint(motion, "a", f"thigh_{s}")
         assert (m * (hand - hip)[:, 1]).min() > 0.09
     assert angular_steps(motion, "a").max() < 0.2
+
+
+def _lines(*lines: str, own: str = "") -> list[str]:
+    """The actions that story lines name, by the library and definitions of the script's own."""
+    head = (
+        'storyboard "S"\n'
+        + own
+        + "character anna = woman\ncharacter ben = man\nscene s = apartment.kitchen\n"
+    )
+    text = head + "anna at door\nben at window\n" + "\n".join(lines) + "\n"
+    checked = check_source(Source("s.vds", text))
+    return [line.beats[0].action for line in checked.storyboard.lines]
+
+
+def test_actions_are_said_by_other_words_and_in_the_third_person() -> None:
+    found = _lines(
+        "(anna walks counter)", "(anna grabs the cup)", "(anna hands cup to ben)", "(ben carries cup)",
+        "(ben stands up)", "(anna yells at ben)", "(ben exits)", "(anna kisses ben)",
+    )  # fmt: skip
+    assert found == ["walk", "pick-up", "give", "carry", "stand-up", "shout", "leave", "kiss"]
+
+
+def test_a_name_is_never_another_word_for_something_else() -> None:
+    catalog = Catalog()
+    names, other = set(catalog.names("action")), catalog.synonyms("action")
+    said = [word for a in definitions().values() for word in a.also]
+    assert len(said) == len(set(said)), "one word for two actions"
+    assert not set(said) & names
+    assert other == {word: name for name, a in definitions().items() for word in a.also}
+    assert {"take": "pick-up", "exit": "leave", "applaud": "clap", "flee": "run"}.items() <= other.items()
+
+
+def test_an_action_of_ones_own_has_other_words_too_and_goes_first() -> None:
+    own = "action hop-about { also bounce grab\n duration 1s\n at 50% { hips drop 4cm } }\n"
+    found = _lines("(anna bounces)", "(anna grab)", own=own)
+    assert found == ["hop-about", "hop-about"]
+    mine = "action grab { duration 1s\n at 50% { hips drop 4cm } }\n"
+    assert _lines("(anna grabs)", own=mine) == ["grab"]

@@ -202,7 +202,7 @@ def test_a_long_beard_rests_on_the_chest_when_the_head_nods() -> None:
 
 
 def _outermost(patch: Patch, axis: NDArray[np.float64], way: NDArray[np.float64]) -> float:
-    """How far from ``axis`` [3] a ray along the floor plan leaves a surface for good; −inf where it meets none."""
+    """How far from ``axis`` [3] a level ray leaves a surface for good; −inf where it meets none."""
     a, b, c = (patch.vertices[patch.faces[:, k]] for k in range(3))
     across = np.cross(way, c - a)
     size = ((b - a) * across).sum(1)
@@ -223,12 +223,12 @@ def test_a_jackets_collar_lies_around_the_shirts(name: str) -> None:
     figure = Figure(body_spec(cast))
     *_, inner, roll = blazer(figure)
     met = 0
-    for turn in np.linspace(0.9, 3.0, 12):
-        way = np.array([np.cos(turn), np.sin(turn), 0.0])
+    for angle in np.linspace(0.9, 3.0, 12):
+        way = np.array([np.cos(angle), np.sin(angle), 0.0])
         for up in np.linspace(1.10, 1.22, 9):
             axis = np.array([figure.joint("neck")[0], 0.0, figure.level(up)])
             inside, outside = (_outermost(piece.patch, axis, way) for piece in (inner, roll))
             if np.isfinite(inside) and np.isfinite(outside):
                 met += 1
-                assert outside > inside + 0.0005, (turn, up)
+                assert outside > inside + 0.0005, (angle, up)
     assert met > 20

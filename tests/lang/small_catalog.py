@@ -154,5 +154,8 @@ class SmallCatalog:
     def names(self, kind: str) -> tuple[str, ...]:
         return tuple(sorted(name for k, name in self._all if k == kind))
 
+    def synonyms(self, kind: str) -> dict[str, str]:
+        return {}
+
     def get(self, kind: str, name: str) -> DefinitionBase | None:
         return self._all.get((kind, name))

@@ -43,9 +43,9 @@ def company_cut(
     picture: Picture,
     seen_from: Callable[[Array], Bools],
 ) -> Array:
-    """Share [P] of the time in which somebody beside the subject is in the picture without their head, and more
-    by :data:`_ENDS` where the last frame is such a one: it is what is remembered of a take. Who is halved by a side
-    of the frame, head and all, counts for :data:`_HALF` of that.
+    """Share [P] of the time in which somebody beside the subject is in the picture without their head, and
+    more by :data:`_ENDS` where the last frame is such a one: it is what is remembered of a take. Who is
+    halved by a side of the frame, head and all, counts for :data:`_HALF` of that.
 
     seen_from: which of points [F, K, 3] no wall or thing hides, bool [P, F, K]
     """
@@ -71,7 +71,7 @@ def company_cut(
 
 
 def _halved(x: Array, half: Array) -> Array:
-    """0 where a breadth about ``x`` [P, F] is in the frame or out of it, 1 where one of its sides halves it."""
+    """0 where a breadth about ``x`` [P, F] is in the frame or out of it, 1 where a side of it halves it."""
     share = np.clip((np.minimum(x + half, 1.0) - np.maximum(x - half, 0.0)) / (2.0 * half), 0.0, 1.0)
     return np.asarray(4.0 * share * (1.0 - share))
 

@@ -15,8 +15,8 @@ from .vectors import dot, length
 
 _HANGS = 0.26  # of the standing height from the collar down, as far as idle hands are at least
 _CHEST = 0.075  # half of the trunk's breadth, of the standing height
-#: How far beside the line from waist to chin a hand is in the picture that hardly stands out from the body, and one
-#: that does so plainly, of the standing height.
+#: How far beside the line from waist to chin a hand is in the picture that hardly stands out from the body,
+#: and one that does so plainly, of the standing height.
 _WITHIN, _PLAIN = 0.06, 0.24
 #: Of an arm: its radius, and what a hand reaches beyond the wrist, of the standing height.
 _ARM, _HAND = 0.026, 0.075
@@ -53,10 +53,12 @@ def hands_missed(takes: Takes, subject: Subject, at: NDArray[np.int64], camera: 
 def gesture_lost(
     takes: Takes, subject: Subject, at: NDArray[np.int64], picture: Picture, shown: Bools
 ) -> Array:
-    """How little [P] of a person's hands at work stands out from the body in the picture, as silhouettes are judged:
-    0 where one of them is plainly beside it all the time, 1 where both are before it, hidden or out of the frame.
+    """How little [P] of a person's hands at work stands out from the body in the picture, as silhouettes are
+    judged: 0 where one of them is plainly beside it all the time, 1 where both are before it, hidden or out of
+    the frame.
 
-    shown: [P, F, 2] as above. 0 for sizes too close to show hands, for what is no person, and where hands do nothing.
+    shown: [P, F, 2] as above. 0 for sizes too close to show hands, for what is no person, and where hands do
+    nothing.
     """
     if subject.kind != "person":
         return np.zeros(len(picture.xy))
@@ -79,8 +81,9 @@ def _at_work(subject: Subject, at: NDArray[np.int64]) -> Bools:
     collar = subject.landmarks["collar"][at]
     trunk = subject.landmarks["waist"][at] - collar
     down = trunk / np.maximum(length(trunk), 1e-6)[..., None]
-    hands = [subject.landmarks[name][at] - collar for name in ("hand_l", "hand_r")]
-    return np.stack([dot(hand, down) < _HANGS * subject.height for hand in hands], axis=1)
+    hands = np.stack([subject.landmarks[name][at] - collar for name in ("hand_l", "hand_r")], axis=1)
+    along: Array = dot(hands, down[:, None])
+    return np.asarray(along < _HANGS * subject.height)
 
 
 def _shows_hands(takes: Takes) -> Bools:

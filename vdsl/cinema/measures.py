@@ -51,8 +51,8 @@ MEASURES = (
     "hands_missed",  # share of the time hands are at work in which neither is seen; 0 for close-ups
     "gesture_lost",  # how little hands at work stand out from the body in the picture; 0 for close-ups
     "face_covered",  # share of the face that the subject's own arms hide, beyond what they have to
-    "company_cut",  # share of the time somebody beside the subject is in the picture without their head, and more
-    # where the last frame is such a one
+    "company_cut",  # share of the time somebody beside the subject is in the picture without their head, and
+    # more where the last frame is such a one
     "foreground",  # share of the picture covered by something much nearer than the subject
     "face",  # cosine between face and direction to the camera: 1 frontal, 0 profile, −1 from behind
     "clearance",  # metres from the camera to the nearest solid or person, at most 1
@@ -69,10 +69,11 @@ _A_WALK = 1.0  # metres that count as going somewhere
 #: What an end on nobody and nothing counts in ``empty``: of a camera that comes from somewhere one waits for
 #: what it finds; one that leaves somebody is to lead to something.
 ENDS_EMPTY = 0.3
-#: What is in the way within a share of the distance to the subject, and how much it counts; sampled frames looked at.
+#: What is in the way within a share of the distance to the subject, and how much it counts; how many of the
+#: sampled frames are looked at.
 _NEAR, _LOOKED_AT = ((0.5, 1.0), (0.72, 0.4)), 6
-#: Where in the frame, −1..1, it is looked whether something near is in the way: of a subject beside it, of a place
-#: all over the picture but for its lowest part, where the floor and what stands there may begin near.
+#: Where in the frame, −1..1, it is looked whether something near is in the way: of a subject beside it, of a
+#: place all over the picture but for its lowest part, where the floor and what stands there may begin near.
 _ASIDE = np.array([(x, y) for x in (-0.85, -0.3, 0.3, 0.85) for y in (-0.6, 0.5)])
 _ALL_OVER = np.array([(x, y) for x in np.linspace(-0.9, 0.9, 10) for y in (-0.5, 0.1, 0.6)])
 
@@ -199,8 +200,8 @@ def _foreground(
     hidden: Bools,
     looks: Array,
 ) -> Array:
-    """Looks [L, 2] across the frame on some of the sampled frames: whether something is in the way half way to the
-    subject, and for less, on the last of the way to it."""
+    """Looks [L, 2] across the frame on some of the sampled frames: whether something is in the way half way to
+    the subject and, for less, on the last of the way to it."""
     some = np.unique((np.arange(_LOOKED_AT) * ((len(at) - 1) / (_LOOKED_AT - 1))).round().astype(int))
     track = takes.track
     others = [(foot[at[some]], crown[at[some]], radius) for foot, crown, radius in takes.others]

@@ -21,10 +21,11 @@ SIGHT = ("eyes", "chin", "pocket", "waist", "hand_l", "hand_r", "knees")
 
 #: Metres over the floor somebody stands on by which one tells in which storey they are.
 _OVER_FLOOR = 0.5
-#: Height of what stands for a place, as a share of its diagonal. Up to so many metres a place is looked at for
-#: its own sake; from so many on it is where its people are.
+#: Height of what stands for a place, as a share of its diagonal. Up to so many metres a place is looked at
+#: for its own sake; from so many on it is where its people are.
 _SHARE, _SMALL, _LARGE = 0.36, 3.0, 5.0
-#: Of people that far apart, and so many metres around them, what has to be shown is so tall, at most so many metres.
+#: Of people that far apart, and so many metres around them, what has to be shown is so tall, at most so many
+#: metres.
 _TALL, _AROUND, _TALLEST = 0.3, 3.0, 8.0
 
 

@@ -93,6 +93,8 @@ def _found(catalog: Catalog, kind: Kind, name: str, search: str) -> list[Row]:
     if not name:
         return rows(catalog, word, search)
     wanted = {n.casefold().replace("-", "_"): n for n in catalog.names(word)}
+    for other, own in catalog.synonyms(word).items():
+        wanted.setdefault(other.casefold().replace("-", "_"), own)
     if kind is Kind.sets:
         name = name.partition(".")[0]  # a room of it, as scenes are written
     known = wanted.get(name.casefold().replace("-", "_").replace(" ", "_"))

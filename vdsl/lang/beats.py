@@ -35,7 +35,8 @@ class BeatReader:
         self.characters = characters
         self.scope = scope
         self.report = report
-        self._actions = {words.fold(name): name for name in catalog.names("action")}
+        self._actions = {words.fold(word): name for word, name in catalog.synonyms("action").items()}
+        self._actions |= {words.fold(name): name for name in catalog.names("action")}
 
     def read(self, node: ast.BeatNode) -> Beat | None:
         character = self._character(node)
@@ -57,6 +58,10 @@ class BeatReader:
         link = next((w.text for w in rest[1:] if w.text in words.PREPOSITIONS), "")
         if definition is None or named is None or character is None:
             return None
+        otherwise: str = getattr(definition, "otherwise", "")
+        if not named and otherwise and self.scope is not None:
+            unsaid = self.scope.first(otherwise, node.span)
+            named = [] if unsaid is None else [unsaid]
         if not self._fits(node, action, definition, named):
             return None
         if len(named) == 2 and link in _INTO and getattr(definition, "needs", "none") == "second":
@@ -96,14 +101,16 @@ class BeatReader:
         """The action, and how many words it took."""
         rest = node.words[1:]
         for size in range(min(_MOST_ACTION_WORDS, len(rest)), 0, -1):
-            word = "-".join(words.fold(name.text) for name in rest[:size])
-            if word in self._actions:
-                return self._actions[word], size
+            first, *others = (words.fold(name.text) for name in rest[:size])
+            for form in (first, *words.plain_forms(first)):
+                word = "-".join((form, *others))
+                if word in self._actions:
+                    return self._actions[word], size
         word = words.fold(rest[0].text)
         meant = nearest(word, self._actions)
         if meant is None and len(rest) > 1:
             meant = nearest(f"{word}-{words.fold(rest[1].text)}", self._actions)
-        if meant is None:  # walks, walking, walked
+        if meant is None:  # walking, walked
             meant = next((a for a in self._actions if len(a) > 2 and word.startswith(a)), None)
         self.report.error(
             "VDS071",

@@ -435,9 +435,10 @@ CODES: dict[str, Code] = {
     ),
     "VDS071": Code(
         "unknown action",
-        "Actions are those of the library and those defined in the script. They are said as they are called: walk, "
-        "not walks. An action of two words may be written with a space: pick up.",
-        "(anna walks counter)",
+        "Actions are those of the library and those defined in the script, by their names or by other words for them "
+        "(take for pick up), as they are called or in the third person (walks). An action of two words may be written "
+        "with a space: pick up.",
+        "(anna wlk counter)",
         "(anna walk counter)",
     ),
     "VDS072": Code(

@@ -15,6 +15,7 @@ from .catalog import CatalogLike
 from .definitions.types import SetNode
 from .diagnostics import Report, listing, nearest
 from .ir import Placement, Target
+from .source import Span
 
 ROOMS = ("set", "room", "area")
 
@@ -60,6 +61,14 @@ class Scope:
             return None
         self._unknown(name, report)
         return None
+
+    def first(self, word: str, span: Span) -> Target | None:
+        """What a word that nobody wrote stands for, the first of several; None where there is nothing.
+
+        span: what it is said by
+        """
+        found = self.look_up((word,))
+        return Target(found[0].kind, found[0].path, word, span) if found else None
 
     def look_up(self, parts: tuple[str, ...]) -> list[Found]:
         """Everything the parts of a name may mean; one where it is plain, none where it is unknown."""

@@ -185,6 +185,18 @@ PREPOSITIONS = ("to", "at", "with", "from", "in", "into", "on", "onto")
 ARTICLES = ("the", "a", "an")
 
 
+def plain_forms(verb: str) -> tuple[str, ...]:
+    """What a verb in the third person may be the form of: ``walks`` of ``walk``, ``pushes``, ``carries``."""
+    forms = []
+    if verb.endswith("ies"):
+        forms.append(f"{verb[:-3]}y")
+    if verb.endswith("es"):
+        forms.append(verb[:-2])
+    if verb.endswith("s") and not verb.endswith("ss"):
+        forms.append(verb[:-1])
+    return tuple(form for form in forms if len(form) > 1)
+
+
 def fold(word: str) -> str:
     """A word as the tables have it."""
     folded = re.sub(r"\s*\+\s*", "+", word.casefold()).replace("_", "-").replace(" ", "-")

@@ -56,9 +56,11 @@ class CastRow(Row):
 
 @dataclass(frozen=True)
 class ActionRow(Row):
-    """target, second: ``none``, ``optional`` or ``required``, with kinds; duration of the first way, s."""
+    """also: other words for it; target, second: ``none``, ``optional`` or ``required``, with kinds; duration of
+    the first way, s."""
 
     group: str
+    also: tuple[str, ...]
     target: str
     target_kinds: tuple[str, ...]
     second: str
@@ -93,6 +95,7 @@ def describe(catalog: Catalog, kind: str, name: str) -> Row | None:
         return ActionRow(
             *head,
             definition.group,
+            definition.also,
             definition.target,
             definition.target_kinds,
             definition.second,

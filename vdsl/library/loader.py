@@ -28,6 +28,7 @@ FOLDERS = {"set": "sets", "prop": "props", "cast": "cast", "action": "actions"}
 #: What models in several files consist of besides.
 BESIDE = frozenset({".bin", ".mtl", ".png", ".jpg", ".jpeg", ".webp"})
 _NAME = re.compile(r"[^\W\d][\w-]*")
+_ALSO = re.compile(r"(?:^|[{;])[ \t]*also[ \t]+([^\n#;}]*)", re.MULTILINE)
 _HEAD = re.compile(r"^[ \t\ufeff]*(set|prop|cast|action)[ \t]+([^\W\d][\w-]*)", re.MULTILINE)
 
 
@@ -78,6 +79,25 @@ class Catalog:
             if definition is not None:
                 self._read[key] = self._reading(definition)
         return self._read[key]
+
+    def synonyms(self, kind: str) -> dict[str, str]:
+        """Other words for definitions of a kind, as their ``also`` says them, with the names they stand for; a
+        word that is a name itself stands for nothing else. Nothing is parsed for it."""
+        names = self.names(kind)
+        found: dict[str, str] = {}
+        for name in names:
+            if (kind, name) in self._own:
+                text = self._own[kind, name].span.text
+            elif name in (listed := self._scan(kind)):
+                source, start, end = listed[name]
+                text = source.text[start:end]
+            else:
+                continue
+            for said in _ALSO.finditer(text):
+                for word in _NAME.findall(said.group(1)):
+                    if word not in names:
+                        found.setdefault(word, name)
+        return found
 
     def source_of(self, kind: str, name: str) -> Source | None:
         """The source a definition comes from."""

@@ -108,9 +108,10 @@ def _actions(found: Sequence[ActionRow]) -> str:
         if not members:
             continue
         parts.append(f"\n## {GROUP_TITLES[group]}\n\n![{group}](images/actions-{group}.jpg)\n\n")
-        parts.append("| action | variants | as in |\n|---|---|---|\n")
+        parts.append("| action | also | variants | as in |\n|---|---|---|---|\n")
         for row in members:
-            parts.append(f"| `{row.name}` | {', '.join(row.variants)} | `({row.example})` |\n")
+            also = ", ".join(word.replace("-", " ") for word in row.also)
+            parts.append(f"| `{row.name}` | {also} | {', '.join(row.variants)} | `({row.example})` |\n")
     return "".join(parts)
 
 

@@ -54,8 +54,8 @@ from .rows import EVERY
 from .sheet import fold_kernel
 
 CLAY_DEPTH = 1.9  # how much deeper the corners are in clay
-#: The air: from so many metres on it grows by so much a metre, and takes at most so much of the colour of sets
-#: and of people.
+#: The air: from so many metres on it grows by so much a metre, and takes at most so much of the colour of
+#: sets and of people.
 CLEAR, THICKENS, HAZE_SET, HAZE_PEOPLE = 2.0, 0.04, 0.27, 0.12
 ABRUPT = 0.05  # difference of key light over a few pixels, above which each is looked up
 
@@ -314,7 +314,9 @@ def shading_kernels(style: Style) -> SimpleNamespace:
                                     )
                                 out = base * (ambient + sun_color * (0.08 + 0.92 * key_light))
                                 out += base * lamplight(eye + ray * depth, nn, lamps)
-                            out += (horizon - out) * (bounded((depth - CLEAR) * THICKENS, 0.0, 1.0) * HAZE_PEOPLE)
+                            out += (horizon - out) * (
+                                bounded((depth - CLEAR) * THICKENS, 0.0, 1.0) * HAZE_PEOPLE
+                            )
                             if xx > before + 1 and ti.abs(key_light - key_before) > ABRUPT:
                                 xx = before + 1
                             else:
@@ -390,7 +392,9 @@ def shading_kernels(style: Style) -> SimpleNamespace:
                                 out = base * 2.0 + 0.2
                                 if material == GLASS:
                                     out = glazed(base, ray, eye + ray * depth)
-                                out += (horizon - out) * (bounded((depth - CLEAR) * THICKENS, 0.0, 1.0) * HAZE_SET)
+                                out += (horizon - out) * (
+                                    bounded((depth - CLEAR) * THICKENS, 0.0, 1.0) * HAZE_SET
+                                )
                                 picture[i] = developed(out, film)
                                 edge[i] = mark
                         else:

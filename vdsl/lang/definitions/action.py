@@ -19,7 +19,7 @@ from .types import DefinitionBase
 
 TARGET_KINDS = ("place", "object", "character")
 SETTINGS = ("target", "second", "duration", "travel", "stride", "cadence", "gait", "sit", "posture", "needs",
-            "faces", "turn", "apart", "along", "hold", "feeling", "group", "example", "partner",
+            "faces", "turn", "apart", "along", "hold", "feeling", "group", "example", "also", "partner",
             "variant")  # fmt: skip
 CHANGES = ("amplitude", "tempo", "mirror", "duration", "stride", "cadence", "gait", "instead", "partner")
 TRAVELS = ("none", "walk", "run", "skip", "crawl")
@@ -72,6 +72,8 @@ class ActionDef(DefinitionBase):
     example: a line that shows it, as in the language, anna acting and ben the other; props: names of the
         props it needs
     goes: whether the way of travelling is written, so that one goes to the target whatever is done there
+    also: other words for it; otherwise: what it is done to where that is required and not said, if the scene
+    has such a thing, "" for nothing
     """
 
     target: str
@@ -95,6 +97,8 @@ class ActionDef(DefinitionBase):
     props: tuple[str, ...] = ()
     needs_hand: str = ""
     goes: bool = False
+    also: tuple[str, ...] = ()
+    otherwise: str = ""
 
 
 def read_action(definition: ast.Definition, report: Report) -> ActionDef | None:
@@ -146,7 +150,8 @@ def _settings(
     turn = settings["turn"].value_angle(0) if "turn" in settings else 0.0
     if "hold" in settings:
         settings["hold"].values()
-    posture, example = settings.get("posture"), settings.get("example")
+    posture, example, also = (settings.get(name) for name in ("posture", "example", "also"))
+    others = () if also is None else tuple(also.value_word(i, "") for i in range(also.count))
     return ActionDef(
         definition.name.text, (), definition.span, target, kinds["target"], second, kinds["second"],
         travel, word("sit", "keep", ("down", "up", "keep")),
@@ -162,6 +167,8 @@ def _settings(
         props=example.words("with") if example is not None else (),
         needs_hand=settings["needs"].word("in", "", ("left", "right")) if "needs" in settings else "",
         goes="travel" in settings and travel != "none",
+        also=tuple(word for word in others if word),
+        otherwise=settings["target"].word("otherwise", "") if "target" in settings else "",
     )  # fmt: skip
 
 

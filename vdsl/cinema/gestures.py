@@ -44,7 +44,7 @@ def hands_missed(takes: Takes, subject: Subject, at: NDArray[np.int64], camera: 
         hand = subject.landmarks[name][at]
         before = _apart(camera, 0.93 * (hand[None] - camera), collar[None], trunk[None])
         seen.append(works[:, side] & shown[..., side] & (before > _CHEST * subject.height))
-    asked = works.any(axis=1)[None] & takes.window
+    asked = (works[:, 0] | works[:, 1]) & takes.window
     found = (seen[0] | seen[1]) & takes.window
     missed = 1.0 - found.sum(axis=1) / np.maximum(asked.sum(axis=1), 1)
     return np.where(_shows_hands(takes) & asked.any(axis=1), missed, 0.0)
@@ -54,8 +54,8 @@ def gesture_lost(
     takes: Takes, subject: Subject, at: NDArray[np.int64], picture: Picture, shown: Bools
 ) -> Array:
     """How little [P] of a person's hands at work stands out from the body in the picture, as silhouettes are
-    judged: 0 where one of them is plainly beside it all the time, 1 where both are before it, hidden or out of
-    the frame.
+    judged: 0 where one of them is plainly beside it all the time, 1 where both are before it, hidden or out
+    of the frame.
 
     shown: [P, F, 2] as above. 0 for sizes too close to show hands, for what is no person, and where hands do
     nothing.
@@ -72,7 +72,7 @@ def gesture_lost(
         beside = _off(picture.of(name) * metres, waist, chin) / subject.height
         plain = np.clip((beside - _WITHIN) / (_PLAIN - _WITHIN), 0.0, 1.0)
         clear = np.maximum(clear, np.where(works[:, side] & shown[..., side], plain, 0.0))
-    asked = works.any(axis=1)[None] & takes.window
+    asked = (works[:, 0] | works[:, 1]) & takes.window
     return np.where(_shows_hands(takes) & asked.any(axis=1), 1.0 - mean_of(clear, asked), 0.0)
 
 

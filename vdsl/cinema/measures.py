@@ -200,8 +200,8 @@ def _foreground(
     hidden: Bools,
     looks: Array,
 ) -> Array:
-    """Looks [L, 2] across the frame on some of the sampled frames: whether something is in the way half way to
-    the subject and, for less, on the last of the way to it."""
+    """Looks [L, 2] across the frame on some of the sampled frames: whether something is in the way half way
+    to the subject and, for less, on the last of the way to it."""
     some = np.unique((np.arange(_LOOKED_AT) * ((len(at) - 1) / (_LOOKED_AT - 1))).round().astype(int))
     track = takes.track
     others = [(foot[at[some]], crown[at[some]], radius) for foot, crown, radius in takes.others]

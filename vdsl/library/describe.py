@@ -56,8 +56,8 @@ class CastRow(Row):
 
 @dataclass(frozen=True)
 class ActionRow(Row):
-    """also: other words for it; target, second: ``none``, ``optional`` or ``required``, with kinds; duration of
-    the first way, s."""
+    """also: other words for it; target, second: ``none``, ``optional`` or ``required``, with kinds; duration
+    of the first way, s."""
 
     group: str
     also: tuple[str, ...]

@@ -81,7 +81,7 @@ class Catalog:
         return self._read[key]
 
     def synonyms(self, kind: str) -> dict[str, str]:
-        """Other words for definitions of a kind, as their ``also`` says them, with the names they stand for; a
+        """Other words for definitions of a kind, as their ``also`` says them, and the names they stand for; a
         word that is a name itself stands for nothing else. Nothing is parsed for it."""
         names = self.names(kind)
         found: dict[str, str] = {}

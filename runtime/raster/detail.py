@@ -201,14 +201,19 @@ def _coarser(mesh: Mesh, own: NDArray[np.int64], share: float) -> tuple[NDArray[
             nearest.append(own[here])
             continue
         used, inside = np.unique(local[here].reshape(-1), return_inverse=True)
-        points, faces = fast_simplification.simplify(
-            lifted[used].astype(np.float32),
-            inside.reshape(-1, 3).astype(np.int32),
-            target_reduction=1.0 - share,
+        before = lifted[used].astype(np.float32), inside.reshape(-1, 3).astype(np.int32)
+        _, _, steps = fast_simplification.simplify(
+            *before, target_reduction=1.0 - share, return_collapses=True
         )
+        points, faces, into = fast_simplification.replay_simplification(*before, steps)
         alone = np.where(first == last, first, -1)[local[here]]
         found, source = _taken_after(
-            lifted[local[here]], corners[here], (look[here], alone), points[faces].astype(np.float64)
+            lifted[local[here]],
+            into[inside].reshape(-1, 3),
+            corners[here],
+            (look[here], alone),
+            points.astype(np.float64),
+            faces,
         )
         out.append(found)
         nearest.append(own[here][source])
@@ -224,17 +229,24 @@ def _looks(mesh: Mesh, own: NDArray[np.int64]) -> NDArray[np.int64]:
 
 def _taken_after(
     places: NDArray[np.float64],
+    into: NDArray[np.integer],
     corners: NDArray[np.integer],
     looks: tuple[NDArray[np.int64], NDArray[np.int64]],
-    triangles: NDArray[np.float64],
+    points: NDArray[np.float64],
+    faces: NDArray[np.integer],
 ) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """New triangles [F, 3, 3] by vertices near their corners, and the old faces nearest to them.
+    """New faces by vertices near their corners, and the old faces nearest to them, [F, 3] and [F].
 
-    places: of the corners of the old faces [N, 3, 3], where ``corners`` says which vertices these are
-    looks: of the old faces [N], and of their corners [N, 3], -1 on a border. A new triangle has the look that
+    A corner is the nearest of the vertices that were drawn together into it: one that was not may lie nearer
+    and yet be elsewhere, as the insides of two legs lie within each other when they are lifted.
+
+    places: of the corners of the old faces [N, 3, 3], where ``corners`` says which vertices these are, and
+        ``into`` into which of the new ``points`` [V, 3] they were drawn; faces: of these
+    looks: of the old faces [N], and of their corners [N, 3], -1 on a border. A new face has the look that
         all of its corners have that lie on no border, else that of the nearest old face
     """
     look, alone = looks
+    triangles = points[faces]
     samples, middles = _WITHIN @ places, triangles.mean(axis=1)
     _, found = cKDTree(samples.reshape(-1, 3)).query(middles)
     guess = look[found // len(_WITHIN)]
@@ -243,12 +255,37 @@ def _taken_after(
     most = inner.max(axis=1)
     sure = (most >= 0) & ((inner < 0) | (inner == most[:, None])).all(axis=1)
     taken = np.where(sure, most, guess)
-    out, nearest = np.zeros((len(triangles), 3), np.int64), np.zeros(len(triangles), np.int64)
+    out = _drawn_together(places, into, corners, look, points, faces, taken)
+    nearest = np.zeros(len(faces), np.int64)
     for name in np.unique(taken):
         here, alike = taken == name, np.flatnonzero(look == name)
-        _, found = cKDTree(places[alike].reshape(-1, 3)).query(triangles[here].reshape(-1, 3))
-        out[here] = corners[alike].reshape(-1)[found].reshape(-1, 3)
+        lost = here[:, None] & (out < 0)
+        if lost.any():  # none of that look was drawn into it
+            _, found = cKDTree(places[alike].reshape(-1, 3)).query(triangles[lost])
+            out[lost] = corners[alike].reshape(-1)[found]
         _, found = cKDTree(samples[alike].reshape(-1, 3)).query(middles[here])
         nearest[here] = alike[found // len(_WITHIN)]
     real = (out[:, 0] != out[:, 1]) & (out[:, 1] != out[:, 2]) & (out[:, 2] != out[:, 0])
     return out[real], nearest[real]
+
+
+def _drawn_together(
+    places: NDArray[np.float64],
+    into: NDArray[np.integer],
+    corners: NDArray[np.integer],
+    look: NDArray[np.int64],
+    points: NDArray[np.float64],
+    faces: NDArray[np.integer],
+    taken: NDArray[np.int64],
+) -> NDArray[np.int64]:
+    """Of the vertices of a face's look that were drawn into its corners, those nearest to these, -1 where there
+    is none: [F, 3]. Arguments as above; taken: the look of each new face, [F]."""
+    looks = int(max(look.max(), taken.max(initial=0))) + 1
+    key = (into * looks + look[:, None]).reshape(-1)
+    away = np.linalg.norm(places - points[into], axis=-1).reshape(-1)
+    order = np.lexsort((corners.reshape(-1), away, key))
+    keys, first = np.unique(key[order], return_index=True)
+    wanted = faces * looks + taken[:, None]
+    at = np.minimum(np.searchsorted(keys, wanted), len(keys) - 1)
+    vertex = corners.reshape(-1)[order[first]]
+    return np.where(keys[at] == wanted, vertex[at], -1).astype(np.int64)

@@ -8,11 +8,16 @@ import numpy as np
 import pytest
 from raster_scenes import box, join, looking, scene, sphere, still
 
+from runtime.body.build import make_body
+from runtime.body.skeleton import PALETTE
 from runtime.raster.detail import COUNT, FINEST, LEVELS, OWN, with_levels
 from runtime.raster.finer import Skin, finer
 from runtime.raster.renderer import Renderer
 from runtime.raster.types import LOOSE, RenderScene
 from runtime.raster.views import pack_views
+from vdsl.lang.definitions.cast import CastDef
+from vdsl.library import Catalog
+from vdsl.stage.cast import body_spec
 
 
 def body() -> RenderScene:
@@ -193,3 +198,29 @@ def test_the_levels_of_a_take_are_what_its_nearest_view_takes() -> None:
     for wrong in (finest[:2], finest + COUNT):
         with pytest.raises(ValueError, match=r"Views\.detail"):
             drawer.render(still(1), replace(views, detail=wrong), size)
+
+
+@pytest.mark.parametrize("name", ["man", "waiter", "soldier", "toddler"])
+def test_no_coarser_level_spans_from_leg_to_leg(name: str) -> None:
+    """The insides of two legs lie within each other while they are lifted: faces took corners of both, and a
+    web hung between the knees of whoever walked some metres away."""
+    cast = Catalog().get("cast", name)
+    assert isinstance(cast, CastDef)
+    made = make_body(body_spec(cast))
+    faces = len(made.mesh.faces)
+    plain = scene([box((-9, -9, -0.1), (9, 9, 0), (0.7, 0.7, 0.7))], [])
+    whole = replace(
+        plain,
+        skinned=made.mesh,
+        skinned_object=np.full(faces, 5, np.int32),
+        joints=made.joints,
+        weights=made.weights,
+        fitting=np.full(faces, LOOSE - 1, np.int32),
+    )
+    found = with_levels(whole)
+    of = np.zeros((len(made.weights), len(PALETTE)))
+    np.add.at(of, (np.arange(len(of))[:, None], made.joints), made.weights)
+    left, right = (of[:, [PALETTE.index(f"{n}_{s}") for n in ("shin", "foot", "toe")]].sum(1) for s in "lr")
+    coarser = (found.level > OWN) & (found.body >= 0)
+    corners = found.scene.skinned.faces[coarser]
+    assert not ((left[corners].max(1) > 0.5) & (right[corners].max(1) > 0.5)).any()

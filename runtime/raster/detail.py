@@ -278,8 +278,8 @@ def _drawn_together(
     faces: NDArray[np.integer],
     taken: NDArray[np.int64],
 ) -> NDArray[np.int64]:
-    """Of the vertices of a face's look that were drawn into its corners, those nearest to these, -1 where there
-    is none: [F, 3]. Arguments as above; taken: the look of each new face, [F]."""
+    """Of the vertices of a face's look that were drawn into its corners, those nearest to these, -1 where
+    there is none: [F, 3]. Arguments as above; taken: the look of each new face, [F]."""
     looks = int(max(look.max(), taken.max(initial=0))) + 1
     key = (into * looks + look[:, None]).reshape(-1)
     away = np.linalg.norm(places - points[into], axis=-1).reshape(-1)

@@ -270,6 +270,13 @@ def test_actions_are_said_by_other_words_and_in_the_third_person() -> None:
     assert found == ["walk", "pick-up", "give", "carry", "stand-up", "shout", "leave", "kiss"]
 
 
+def test_of_two_readings_the_one_with_what_it_needs_is_taken() -> None:
+    """`serve ball` is to serve the ball, not the stroke `serve-ball` with nothing to strike."""
+    own = "action serve-cup { target required object\n duration 1s\n at 50% { hips drop 4cm } }\n"
+    assert _lines("(anna serve cup)", "(anna serve-cup cup)", own=own) == ["serve", "serve-cup"]
+    assert _lines("(anna picks up the cup)", "(anna look back)") == ["pick-up", "look-back"]
+
+
 def test_a_name_is_never_another_word_for_something_else() -> None:
     catalog = Catalog()
     names, other = set(catalog.names("action")), catalog.synonyms("action")

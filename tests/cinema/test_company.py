@@ -144,6 +144,15 @@ def test_a_place_is_to_show_everybody_in_it() -> None:
     assert flaws(far)["visibility"].all()
 
 
+def test_people_of_a_place_stand_side_by_side_in_its_picture() -> None:
+    """One behind the other, head past head, is one clump; the farther one counts as shown in part."""
+    eye = (5.0, 0.0, 1.5)
+    beside, clump = (in_a_place(two((-1.5, y)), eye) for y in (1.0, 0.25))
+    assert beside["interest"] == 1.0
+    assert 0.7 < clump["interest"] < 0.92
+    assert clump["visibility"] < beside["visibility"] == 1.0
+
+
 def test_a_large_place_is_shown_where_its_people_are() -> None:
     corner = two((14.0, 3.0))
     anna, ben = (performed(name, acted, BODY) for name, acted in corner.performances.items())

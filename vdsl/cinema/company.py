@@ -32,6 +32,9 @@ _UPPER = SIGHT[:3]
 _BEFORE = 0.2
 #: Half the width of a head and of a trunk, metres.
 _HEAD_HALF, _BODY_HALF = 0.08, 0.18
+#: Metres between the chests of two of whom none covers the other, one above the other in the picture; and how
+#: much less somebody counts as shown who stands straight behind another.
+_TALL, _COVERED = 1.1, 0.8
 
 
 def company_cut(
@@ -101,8 +104,12 @@ def company_shown(
     xy, depth = project(eyes[None], camera, axes, focal, takes.track.sensor)
     half = np.array(takes.track.sensor) / focal[..., None]
     seen = within(xy, depth, _EDGE) & seen_from(eyes) & ~behind_heads(xy * half[:, :, None], depth)
+    chests = np.stack([one.landmarks["pocket"][at] for one in people], axis=1)
+    apart = 1.0 - _COVERED * _covered(
+        *project(chests[None], camera, axes, focal, takes.track.sensor), focal, takes
+    )
     counts = here.sum(axis=1)
-    share = np.where(counts > 0, (seen & here).sum(axis=2) / np.maximum(counts, 1), 1.0)
+    share = np.where(counts > 0, (seen * apart * here).sum(axis=2) / np.maximum(counts, 1), 1.0)
     faces, cropped, cut = (np.zeros(len(camera)) for _ in range(3))
     stays = here.sum(axis=0) / max(int(here.sum(axis=0).max(initial=0)), 1)
     sight: dict[str, Array] = {}
@@ -118,8 +125,23 @@ def company_shown(
         over = np.where(there, -found.of("top")[..., 1], 0.0).max(axis=1)
         cut = np.maximum(cut, np.clip(over, 0.0, 2.0))
     shown = mean_of(share, takes.window)
+    last = np.where(takes.window[:, -1], share[:, -1], shown)
+    shown = np.minimum(shown, (shown + last) / 2)  # the last picture is what is remembered
     sight["visibility"] = (sight["visibility"] + shown) / 2
     return {"interest": shown, "face": faces, "head_cropped": cropped, "head_cut": cut} | sight
+
+
+def _covered(xy: Array, depth: Array, focal: Array, takes: Takes) -> Array:
+    """How far somebody nearer stands before each of people [P, F, K], by where their chests are in the
+    picture: 0 for side by side, 1 for straight behind."""
+    scale = focal[..., None] / np.maximum(depth, _BEFORE)  # of metres there, in millimetres of the sensor
+    wide, high = _BODY_HALF * scale, _TALL * scale
+    x, y = (xy[..., k] * takes.track.sensor[k] for k in (0, 1))
+    beside = np.abs(x[..., :, None] - x[..., None, :]) / (wide[..., :, None] + wide[..., None, :])
+    above = np.abs(y[..., :, None] - y[..., None, :]) / high[..., None, :]
+    nearer = (depth[..., None, :] < depth[..., :, None]) & (depth[..., None, :] > _BEFORE)
+    over = np.clip(1.0 - beside, 0.0, 1.0) * np.clip(1.0 - above, 0.0, 1.0) * nearer
+    return np.asarray(over.max(axis=-1))
 
 
 def _sight(

@@ -100,12 +100,20 @@ class BeatReader:
     def _action(self, node: ast.BeatNode) -> tuple[str | None, int]:
         """The action, and how many words it took."""
         rest = node.words[1:]
+        found: tuple[str, int] | None = None
         for size in range(min(_MOST_ACTION_WORDS, len(rest)), 0, -1):
             first, *others = (words.fold(name.text) for name in rest[:size])
             for form in (first, *words.plain_forms(first)):
-                word = "-".join((form, *others))
-                if word in self._actions:
-                    return self._actions[word], size
+                action = self._actions.get("-".join((form, *others)))
+                if action is not None and (found is None or found[0] != action):
+                    if size < len(rest) or not self._wants_target(action):
+                        return action, size
+                    found = found or (
+                        action,
+                        size,
+                    )  # unless fewer words leave one: `serve ball`, not `serve-ball`
+        if found is not None:
+            return found
         word = words.fold(rest[0].text)
         meant = nearest(word, self._actions)
         if meant is None and len(rest) > 1:
@@ -121,6 +129,12 @@ class BeatReader:
             fix=meant,
         )
         return None, 0
+
+    def _wants_target(self, action: str) -> bool:
+        """Whether nothing can be done by it alone."""
+        definition = self.catalog.get("action", action)
+        otherwise: str = getattr(definition, "otherwise", "")
+        return getattr(definition, "target", "optional") == "required" and not otherwise
 
     def _actions_in_words(self) -> str:
         names = self.catalog.names("action")

@@ -21,6 +21,7 @@ from .track import project
 
 #: One who is nearer than the subject counts in full, one so many times as far away hardly any more.
 _FAR = 6.0
+#: What the last frame adds, and what somebody counts who has a head and is halved by a side of the frame.
 _ENDS, _HALF = 0.3, 0.5
 #: Cosine between a face and the direction to the camera below which one sees the back of a head.
 _FACELESS = -0.2

@@ -102,16 +102,12 @@ class BeatReader:
         rest = node.words[1:]
         found: tuple[str, int] | None = None
         for size in range(min(_MOST_ACTION_WORDS, len(rest)), 0, -1):
-            first, *others = (words.fold(name.text) for name in rest[:size])
-            for form in (first, *words.plain_forms(first)):
-                action = self._actions.get("-".join((form, *others)))
-                if action is not None and (found is None or found[0] != action):
-                    if size < len(rest) or not self._wants_target(action):
-                        return action, size
-                    found = found or (
-                        action,
-                        size,
-                    )  # unless fewer words leave one: `serve ball`, not `serve-ball`
+            action = self._called(rest[:size])
+            if action is None or (found is not None and not self._is_there(rest[size:])):
+                continue
+            if size < len(rest) or not self._wants_target(action):
+                return action, size
+            found = action, size  # unless fewer words leave a target: `serve ball`, not `serve-ball`
         if found is not None:
             return found
         word = words.fold(rest[0].text)
@@ -129,6 +125,18 @@ class BeatReader:
             fix=meant,
         )
         return None, 0
+
+    def _called(self, said: tuple[ast.Name, ...]) -> str | None:
+        """The action that all of some words name, the first as it is or in the third person."""
+        first, *others = (words.fold(name.text) for name in said)
+        forms = ("-".join((form, *others)) for form in (first, *words.plain_forms(first)))
+        return next((self._actions[form] for form in forms if form in self._actions), None)
+
+    def _is_there(self, said: tuple[ast.Name, ...]) -> bool:
+        """Whether the last of some words is somebody, or something in the scene."""
+        if not said or self.scope is None:
+            return False
+        return said[-1].text in self.characters or bool(self.scope.look_up(said[-1].parts))
 
     def _wants_target(self, action: str) -> bool:
         """Whether nothing can be done by it alone."""

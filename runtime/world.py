@@ -91,6 +91,7 @@ class WorldObject:
     world_from_object: [4, 4], the placement (at rest for a movable object)
     grip: where a hand takes hold, in object coordinates, for a movable object
     hinge: how it moves, for a part that opens; ajar: how far it stands open at first, 0..1
+    bearer: who has it about them, for what is nowhere to be seen until they take it out
     """
 
     id: int
@@ -104,6 +105,7 @@ class WorldObject:
     grip: tuple[float, float, float] | None = None
     hinge: Hinge | None = None
     ajar: float = 0.0
+    bearer: str = ""
 
     @property
     def centre(self) -> tuple[float, float, float]:

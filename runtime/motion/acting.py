@@ -26,9 +26,9 @@ class Performer(Trunk):
 
     # -- arms -----------------------------------------------------------------------------
 
-    def arm_pose(self, carry: Array) -> ArmPose:
-        """Both arms by angles: hanging, swinging with the gait, carrying (``carry`` [2, T]), then keys."""
-        c = self.channels
+    def arm_pose(self, tracks: HandTracks) -> ArmPose:
+        """Both arms by angles: hanging, swinging with the gait, carrying, then keys."""
+        c, carry = self.channels, tracks.carry
         stride = np.clip(self.lead / (0.42 * self.height), -1.6, 1.6) * self.style.arms
         opposite = np.stack([-stride, stride])
         lag = delayed(opposite.T, 0.06 * self.fps).T
@@ -54,7 +54,8 @@ class Performer(Trunk):
             "wrist": 0.12 + 0.1 * lag, "side": np.zeros_like(swing), "turn": np.full_like(swing, 0.35),
         }  # fmt: skip
         held: dict[str, Array | float] = {
-            "swing": 0.18 + 0.25 * opposite * 0.36, "out": 0.16, "bend": 1.42, "twist": 0.18,
+            "swing": 0.18 - 0.15 * tracks.hang + 0.25 * opposite * 0.36, "out": 0.16 + 0.06 * tracks.hang,
+            "bend": tracks.bend, "twist": 0.18,
             "wrist": 0.0, "side": 0.0, "turn": 0.0,
         }  # fmt: skip
         weight = c.pair("arm", "weight")
@@ -131,7 +132,7 @@ class Performer(Trunk):
     def arms(self, contacts: Contacts) -> Array:
         """Poses arms and hands; returns the palms [2, T, 3]."""
         tracks = contacts.tracks
-        pose = self.arm_pose(tracks.carry)
+        pose = self.arm_pose(tracks)
         rotation = tracks.rotation(self.figure.hands)
         goals = HandGoals(
             tracks.position(self.figure), tracks.weight, rotation, tracks.turning, tracks.around

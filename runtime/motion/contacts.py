@@ -33,6 +33,8 @@ _LIE: dict[str, tuple[float, float, float]] = {
 }  # fmt: skip
 #: What is added to that while the hand is empty: flat over the mouth, which a cup would be tipped into.
 _EMPTY: dict[str, tuple[float, float, float]] = {"mouth": (0.4, -0.35, 0.0)}
+#: Radians an elbow is bent by that holds a cup before one.
+CARRYING = 1.42
 _PALM = {"side": 0.0, "down": 1.45, "up": -1.3}
 #: A palm held flat against what is before one, fingers up.
 _FLAT = (-1.3, 1.2, 0.0)
@@ -93,6 +95,7 @@ class HandTracks:
     somebody else's body; around: the arm goes around them
     turning: how far its orientation is; inward, pitch, tilt: that orientation
     carry: a thing is in the hand; grip: fingers closed
+    bend: radians, of an elbow that carries; hang: how far its arm hangs, 0 (hand before one) to 1
     """
 
     def __init__(
@@ -104,13 +107,15 @@ class HandTracks:
         layers: list[Layer],
         skeleton: Skeleton,
         wield: Wield,
+        bend: Array,
     ) -> None:
         shape = carry.shape
+        self.bend, self.hang = bend, carry * (1.0 - bend / CARRYING)
         self.t, self.yaw, self.carry, self.layers, self.skeleton = t, yaw, carry, layers, skeleton
         self.wield = wield
         self.weight, self.pull = np.zeros(shape), np.zeros(shape)
         self.turning = carry.copy()
-        self.inward = np.full(shape, 0.55)
+        self.inward = 0.55 - 0.45 * self.hang
         self.pitch = np.zeros(shape)
         roll = np.zeros(shape)
         self.grip = carry
@@ -135,7 +140,7 @@ class HandTracks:
         self.pitch *= 1 - carry * (1 - np.maximum(along, loose))
         self.tilt = roll * (1 - carry) + tilt[0]
         self.lifted = lifted - tilt[1]  # how far what is held points up
-        self.pitch = self.pitch - tilt[1]
+        self.pitch = self.pitch - tilt[1] - 1.35 * self.hang * (1 - self.weight)  # fingers down
         self.reaching = bool(self.pull.any())
         others = [x.weight for x in layers if x.other is not None]
         self.close = np.max(others, axis=0) if others else np.zeros(len(t))
@@ -222,7 +227,9 @@ class HandTracks:
         stands before the fingers."""
         since = int(np.clip(np.searchsorted(self.t, held.since), 0, len(self.t) - 1))
         yaw = float(self.hand_yaw(k)[since])
-        turn = float(wrap(yaw - held.axis_yaw)) if held.handle else 0.0
+        turn = float(wrap(yaw - held.axis_yaw)) if held.handle or held.hangs else 0.0
+        if held.hangs and abs(turn) > np.pi / 2:
+            turn = float(wrap(turn + np.pi))  # either end of its handle may be ahead
         share = ramp(self.t, held.since, held.since + 0.6)
         natural = np.asarray(self._up(k) @ rot_z(turn * share - yaw) @ held.rotation)
         weight = self.wield.weight[k]

@@ -10,6 +10,9 @@ from numpy.typing import NDArray
 from .rotations import rot_z
 
 Array = NDArray[np.float64]
+#: Metres from a thing's foot to its grip: from the first on it hangs from an arm, from the second on it
+#: stands on the floor beside one, as a broom does.
+HANGS, STANDS = 0.28, 0.8
 
 
 @dataclass(frozen=True, eq=False)
@@ -27,9 +30,14 @@ class Held:
         return bool(np.hypot(self.grip[0], self.grip[1]) > 0.02)
 
     @property
+    def hangs(self) -> bool:
+        """Whether it is carried by a handle on top of it, at the end of a straight arm: a bag, a bucket."""
+        return not self.handle and HANGS <= float(self.grip[2]) < STANDS
+
+    @property
     def axis_yaw(self) -> float:
-        """Direction from the handle to the middle of the thing, as it was."""
-        d = -(self.rotation @ self.grip)
+        """Direction from the handle to the thing's middle, as it was; of what hangs, along its handle."""
+        d = self.rotation @ (np.array([1.0, 0.0, 0.0]) if self.hangs else -self.grip)
         return float(np.arctan2(d[1], d[0]))
 
     @property

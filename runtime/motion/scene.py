@@ -7,12 +7,14 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from runtime.body.skeleton import JOINT
+
 from .acting import Performer
-from .contacts import SIDE, Contacts, HandTracks, Layer, Wield, holding_weight, reach_layer
+from .contacts import CARRYING, SIDE, Contacts, HandTracks, Layer, Wield, holding_weight, reach_layer
 from .curves import plateau, ramp, wander
 from .face import GazePull, fade, relative_gaze
 from .figure import Figure
-from .held import Held
+from .held import HANGS, Held
 from .hinges import followed, handle_track, openness
 from .holding import holds_of, spans_of
 from .plan import Plan, Window
@@ -23,6 +25,8 @@ from .types import PropState, TargetPoint, Task
 from .words import BODY_PLACES
 
 Array = NDArray[np.float64]
+#: Metres that what hangs from a hand or stands beside one is kept off the floor.
+_OFF_FLOOR = 0.04
 
 
 class Scene:
@@ -148,17 +152,20 @@ class Scene:
     def _tracks(self, name: str) -> HandTracks:
         performer = self.performers[name]
         t, plan = self.t, performer.plan
-        carry = np.zeros((2, len(t)))
+        posed = performer.channels.pair("arm", "weight")
+        upright = (1 - performer.sitting) * (1 - performer.low.share) * (1 - posed)
+        carry, bend = np.zeros((2, len(t))), np.full((2, len(t)), CARRYING)
         for k, side in enumerate("lr"):
-            spans = [s for holds in self.holds.values() for s in spans_of(holds, name, side)]
-            carry[k] = holding_weight(t, spans)
+            for thing, holds in self.holds.items():
+                weight = holding_weight(t, spans_of(holds, name, side))
+                carry[k] = np.maximum(carry[k], weight)
+                bend[k] += weight * upright[k] * (self._bend(performer, thing) - CARRYING)
         tilt, dip = np.zeros((2, len(t))), np.zeros((2, len(t)))
-        weight = performer.channels.pair("arm", "weight")
-        lap = performer.sitting * (1 - weight) * (1 - carry)
+        lap = performer.sitting * (1 - posed) * (1 - carry)
         layers = []
         if performer.sitting.max() > 0:
             layers = [Layer(k, lap[k], "lap", np.zeros(3), (0.35, -0.15, 1.35)) for k in (0, 1)]
-        layers += performer.resting(weight, carry)
+        layers += performer.resting(posed, carry)
         for window in plan.windows:
             for tip in window.timeline.tilts:
                 times = [window.at(x) for x in (tip.start, tip.arrive, tip.leave, tip.end)]
@@ -177,7 +184,16 @@ class Scene:
                 if layer is not None:
                     layers.append(layer)
         wield = Wield.of(performer.channels)
-        return HandTracks(t, performer.yaw, carry, (tilt, dip), layers, performer.skeleton, wield)
+        return HandTracks(t, performer.yaw, carry, (tilt, dip), layers, performer.skeleton, wield, bend)
+
+    def _bend(self, performer: Performer, thing: int) -> float:
+        """Radians of the elbow somebody who stands carries a thing with: what hangs stays off the floor."""
+        grip = self.rest[thing].grip
+        if grip[2] < HANGS:
+            return CARRYING
+        arm = performer.figure.arm_length
+        up = float(performer.skeleton.bind[JOINT["upperarm_l"], 2]) - grip[2] - _OFF_FLOOR
+        return float(np.clip(np.arccos(np.clip(2.0 * up / arm - 1.0, -1.0, 1.0)), 0.12, CARRYING))
 
     def _reach(self, performer: Performer, window: Window, reach: Reach) -> Layer | None:
         side = window.hands[reach.hand]

@@ -138,7 +138,7 @@ class SmallCatalog:
     def __init__(self) -> None:
         self._all: dict[tuple[str, str], DefinitionBase] = {}
         for name, spots in PROPS.items():
-            self._all["prop", name] = Prop(name, (), NOWHERE, spots)
+            self._all["prop", name] = Prop(name, (), NOWHERE, spots, movable=name == "cup")
         for root in (APARTMENT, STREET):
             self._all["set", root.name] = Set(root.name, (), NOWHERE, root)
         for name, (target, kinds, second) in ACTIONS.items():

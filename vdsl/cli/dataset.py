@@ -12,9 +12,20 @@ from .compile import Device
 
 def dataset(
     out: Annotated[Path, typer.Argument(help="Folder for the training set; one begun is gone on with.")],
-    clips: Annotated[int, typer.Option(min=0, help="Clips to film, half of them good.")] = 10_000,
+    clips: Annotated[
+        int, typer.Option(min=0, help="Clips to film with pictures, half of them good.")
+    ] = 10_000,
     seed: Annotated[int, typer.Option(min=0, help="Seed of the stories.")] = 0,
     size: Annotated[int, typer.Option(min=32, max=512, help="Side of the pictures, in pixels.")] = 224,
+    pictures: Annotated[
+        float,
+        typer.Option(
+            min=0.01,
+            max=1,
+            help="Share of the stories to learn from whose clips get pictures; the others get guides alone, "
+            "which are far more quickly made.",
+        ),
+    ] = 1.0,
     positives: Annotated[
         Path | None,
         typer.Option(
@@ -48,5 +59,5 @@ def dataset(
         if picks:
             added += add_picks(out, picks, seed, size)
         with Bars(console) as bars:
-            filmed = generate(out, clips, seed, device.value, bars, size) if clips else 0
+            filmed = generate(out, clips, seed, device.value, bars, size, pictures=pictures) if clips else 0
     print(f"{out}: {filmed or added} clips" + (f", {added} of them added from films" if added else ""))

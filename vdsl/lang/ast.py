@@ -224,12 +224,13 @@ class SceneLine:
 
 @dataclass(frozen=True)
 class PlacementLine:
-    """``anna at door facing window``; posture is ``sitting``, ``standing`` or None where not said."""
+    """``anna at door facing window holding bag``; ``posture`` is None where not said."""
 
     character: Name
     at: Name | None
     facing: Name | None
     posture: Name | None
+    holding: Name | Call | None
     span: Span = field(compare=False, repr=False)
 
 

@@ -35,11 +35,12 @@ class BeatReader:
         self.characters = characters
         self.scope = scope
         self.report = report
+        self._who: str | None = None
         self._actions = {words.fold(word): name for word, name in catalog.synonyms("action").items()}
         self._actions |= {words.fold(name): name for name in catalog.names("action")}
 
     def read(self, node: ast.BeatNode) -> Beat | None:
-        character = self._character(node)
+        character = self._who = self._character(node)
         node, manner = self._manner(node)
         if len(node.words) < 2:
             self.report.error(
@@ -62,12 +63,13 @@ class BeatReader:
         if not named and otherwise and self.scope is not None:
             unsaid = self.scope.first(otherwise, node.span)
             named = [] if unsaid is None else [unsaid]
-        if not self._fits(node, action, definition, named):
+        only_second = _is_second(definition, named)
+        if not only_second and not self._fits(node, action, definition, named):
             return None
         if len(named) == 2 and link in _INTO and getattr(definition, "needs", "none") == "second":
             named = [named[1], named[0]]
         first, second = (*named, None, None)[:2]
-        if second is None and _works_with(definition, rest):
+        if only_second or (second is None and _works_with(definition, rest)):
             first, second = None, first
         for target in named:
             if target.kind == "character" and target.path[0] == character:
@@ -199,6 +201,9 @@ class BeatReader:
         return self._resolve(group[0])
 
     def _resolve(self, name: ast.Name) -> Target | None:
+        own = self.scope.carried_by(self._who, name.text) if self.scope and self._who else None
+        if own is not None:
+            return Target("object", own.path, name.text, name.span)
         return resolve(name, self.characters, self.scope, self.report)
 
     def _fits(self, node: ast.BeatNode, action: str, definition: DefinitionBase, named: list[Target]) -> bool:
@@ -294,6 +299,14 @@ def _works_with(definition: DefinitionBase, rest: tuple[ast.Name, ...]) -> bool:
         and rest[:1] != ()
         and rest[0].text == "with"
     )
+
+
+def _is_second(definition: DefinitionBase, named: list[Target]) -> bool:
+    """Whether the only target named is none to do it to, but one of the second kind: ``toast to ben``."""
+    if len(named) != 1 or getattr(definition, "target", "none") != "optional":
+        return False
+    kinds, also = (tuple(getattr(definition, name, ())) for name in ("target_kinds", "second_kinds"))
+    return bool(kinds) and bool(also) and not _kind_fits(named[0], kinds) and _kind_fits(named[0], also)
 
 
 def _kind_fits(target: Target, kinds: tuple[str, ...]) -> bool:

@@ -213,17 +213,25 @@ class Builder:
     def placement(self, node: Tree[Token]) -> ast.PlacementLine:
         name, *parts = node.children
         found: dict[str, ast.Name] = {}
+        held: ast.Name | ast.Call | None = None
         for part in parts:
             assert isinstance(part, Tree)
-            word = self.name(_token(part.children[-1]))
-            if part.data in found:
-                self.report.error("VDS009", self.span(part), label=f"said twice on this line: `{word.text}`")
-            found[str(part.data)] = word
+            last = part.children[-1]
+            word = self.call(last) if isinstance(last, Tree) else self.name(_token(last))
+            if part.data in found or (part.data == "place_holding" and held is not None):
+                self.report.error(
+                    "VDS009", self.span(part), label=f"said twice on this line: `{word.span.text}`"
+                )
+            if part.data == "place_holding":
+                held = word
+            elif isinstance(word, ast.Name):
+                found[str(part.data)] = word
         return ast.PlacementLine(
             self.name(_token(name)),
             found.get("place_at"),
             found.get("place_facing"),
             found.get("place_posture"),
+            held,
             self.span(node),
         )
 

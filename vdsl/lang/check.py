@@ -11,6 +11,7 @@ from pathlib import PurePath
 
 from . import ast
 from .beats import BeatReader, unknown_character
+from .bringing import bring
 from .catalog import CatalogLike
 from .diagnostics import Report
 from .files import used_scripts
@@ -272,7 +273,10 @@ class _Checker:
         if stage is None:
             return
         placements = tuple(stage.placements[name] for name in stage.members if name in stage.placements)
-        self.scenes.append(Scene(stage.name, stage.set_name, stage.room, stage.time, placements, stage.span))
+        carried = tuple(sorted(stage.carried.values(), key=lambda thing: not thing.held))
+        self.scenes.append(
+            Scene(stage.name, stage.set_name, stage.room, stage.time, placements, stage.span, carried)
+        )
         self.stage = None
 
     def _need_stage(self, span: Span) -> SceneBeingRead | None:
@@ -316,7 +320,7 @@ class _Checker:
                 appear(word, stage, self.report)
         beat = reader.read(node)
         stage.acted.add(node.words[0].text)
-        return beat
+        return None if beat is None else bring(beat, stage, self.catalog)
 
     def _together(self, beats: tuple[Beat, ...]) -> None:
         """Nobody does two things at once."""

@@ -492,6 +492,13 @@ CODES: dict[str, Code] = {
         "(ben drink)",
         "(ben pick up cup)\n(ben drink)",
     ),
+    "VDS081": Code(
+        "nothing to hold",
+        "Who is placed `holding` something has it in a hand when the scene opens: a thing of the scene, or any prop that "
+        "can be carried.",
+        "carl at counter holding sofa",
+        "carl at counter holding cup",
+    ),
     "VDS079": Code(
         "someone has no place yet",
         "Someone takes part in a scene and has not been placed in it. They are put at the scene's first free spot; "
@@ -614,6 +621,13 @@ CODES: dict[str, Code] = {
         "time `to` a later one.",
         "action tap {\n    duration 1s\n    reach right chest, from 50%, at 30%\n}",
         "action tap {\n    duration 1s\n    reach right chest, from 30%, at 50%\n}",
+    ),
+    "VDS145": Code(
+        "nothing to bring",
+        "An action `brings` a prop that can be carried, for what it `needs` in a hand and the line does not name: its "
+        "target or its second.",
+        "action hum {\n    duration 1s\n    brings flute\n}",
+        "action hum {\n    target optional object\n    needs target\n    duration 1s\n    brings flute\n}",
     ),
     # -- the cast (VDS160-169) -----------------------------------------------------------
     "VDS160": Code(

@@ -14,7 +14,7 @@ Thing = tuple[str, ...]
 
 
 class Hands:
-    """The hands of everyone in one scene; empty when it opens."""
+    """The hands of everyone in one scene; empty when it opens, but for what people are placed with."""
 
     def __init__(self, catalog: CatalogLike, report: Report) -> None:
         self._catalog = catalog
@@ -26,8 +26,10 @@ class Hands:
         definition = self._catalog.get("action", beat.action)
         if definition is None:
             return
-        self._need(beat, getattr(definition, "needs", "none"))
         held = self._held.setdefault(beat.character, [])
+        if beat.brought is not None and beat.brought.path not in held:
+            held.append(beat.brought.path)
+        self._need(beat, getattr(definition, "needs", "none"))
         moves = _moves(definition)
         if "take" in moves and beat.target is not None and beat.target.kind == "object":
             for other in self._held.values():
@@ -39,6 +41,18 @@ class Hands:
                 held.remove(gone)
                 if moves & {"pass", "throw"} and beat.second is not None and beat.second.kind == "character":
                     self._held.setdefault(beat.second.path[0], []).append(gone)
+
+    def give(self, who: str, thing: Thing) -> None:
+        """Put a thing into a hand before anything happens."""
+        self._held.setdefault(who, []).append(thing)
+
+    def holder(self, thing: Thing) -> str | None:
+        """Who has a thing in a hand."""
+        return next((who for who, held in self._held.items() if thing in held), None)
+
+    def held_by(self, who: str) -> tuple[Thing, ...]:
+        """What somebody has in their hands."""
+        return tuple(self._held.get(who, ()))
 
     def _meant(self, beat: Beat, held: list[Thing]) -> Thing | None:
         """What leaves the hand: the target if it is held, else what was taken last."""

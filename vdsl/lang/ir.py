@@ -71,13 +71,36 @@ class Target:
 
 @dataclass(frozen=True)
 class Placement:
-    """``anna at door facing window``: where a character is when the scene opens."""
+    """``anna at door facing window holding bag``: where a character is when the scene opens.
+
+    holding: a thing of the set, or one that is :class:`Carried`
+    """
 
     character: str
     at: Target
     facing: Target | None
     posture: str  # standing | sitting | kneeling | crouching | lying
     span: Span = field(compare=False, repr=False)
+    holding: Target | None = None
+
+
+@dataclass(frozen=True)
+class Carried:
+    """A thing somebody brings to a scene: it has no place in the set; as a target, its path is who and name.
+
+    arguments: of the prop; held: in a hand when the scene opens. Else it is about them, and not to be seen
+    until an action needs it
+    """
+
+    who: str
+    name: str
+    prop: str
+    arguments: tuple[tuple[str, Argument], ...] = ()
+    held: bool = False
+
+    @property
+    def path(self) -> tuple[str, ...]:
+        return (self.who, self.name)
 
 
 @dataclass(frozen=True)
@@ -85,6 +108,7 @@ class Scene:
     """``scene kitchen = apartment.kitchen at dusk``; ``room`` is the path inside the set, () for all of it.
 
     placements: everyone who is placed or named in the scene, each once
+    carried: what people bring, what is in a hand at first before the rest
     """
 
     name: str
@@ -93,6 +117,7 @@ class Scene:
     time: str  # dawn | day | dusk | night
     placements: tuple[Placement, ...]
     span: Span = field(compare=False, repr=False)
+    carried: tuple[Carried, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -100,6 +125,7 @@ class Beat:
     """One ``(char do sth)``; several joined by ``+`` run at once.
 
     manner: how it is done (a word of :data:`runtime.motion.manner.MANNERS`), "" where nothing was said
+    brought: what it is done with where the line names nothing: a thing somebody has about them, or in a hand
     """
 
     character: str
@@ -108,6 +134,7 @@ class Beat:
     second: Target | None
     span: Span = field(compare=False, repr=False)
     manner: str = ""
+    brought: Target | None = None
 
 
 @dataclass(frozen=True)

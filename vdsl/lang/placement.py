@@ -10,9 +10,10 @@ from dataclasses import dataclass, field
 
 from . import ast
 from .beats import BeatReader, resolve
+from .bringing import held_at_first
 from .diagnostics import Report, listing
 from .hands import Hands
-from .ir import Placement, Target
+from .ir import Carried, Placement, Target
 from .scope import Scope
 from .source import Span
 
@@ -31,6 +32,7 @@ class SceneBeingRead:
     hands: Hands
     span: Span
     reader: BeatReader | None = None
+    carried: dict[tuple[str, ...], Carried] = field(default_factory=dict)
     placements: dict[str, Placement] = field(default_factory=dict)
     acted: set[str] = field(default_factory=set)
 
@@ -65,7 +67,8 @@ def place(
     posture = line.posture.text if line.posture else "standing"
     if at is not None and posture == "sitting" and scene.scope is not None:
         _check_seat(at, line, scene.scope, scene.placements, report)
-    scene.placements[name] = Placement(name, at or free, facing, posture, line.span)
+    holding = None if line.holding is None else held_at_first(line.holding, name, scene, report)
+    scene.placements[name] = Placement(name, at or free, facing, posture, line.span, holding)
 
 
 def _check_seat(

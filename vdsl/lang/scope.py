@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 from .ast import Name
 from .catalog import CatalogLike
-from .definitions.types import SetNode
+from .definitions.types import DefinitionBase, SetNode
 from .diagnostics import Report, listing, nearest
 from .ir import Placement, Target
 from .source import Span
@@ -43,6 +43,18 @@ class Scope:
         self.room = room
         self._catalog = catalog
         self._cache: dict[tuple[str, ...], list[Found]] = {}
+        self._carried: dict[tuple[str, ...], SetNode] = {}
+
+    def carry(self, path: tuple[str, ...], prop: str, span: Span) -> None:
+        """Let a thing that somebody has with them be found: by their name and its own, and where nothing of
+        the set is called so, by its own."""
+        self._carried[path] = SetNode(path[-1], "object", prop, (), (), span)
+        self._cache.clear()
+
+    def carried_by(self, who: str, name: str) -> Found | None:
+        """A thing that somebody has with them."""
+        node = self._carried.get((who, name))
+        return None if node is None else Found((who, name), node, False)
 
     def find(self, name: Name, report: Report) -> Target | None:
         """The target a name stands for; None where it was reported to be unknown or ambiguous."""
@@ -73,7 +85,7 @@ class Scope:
     def look_up(self, parts: tuple[str, ...]) -> list[Found]:
         """Everything the parts of a name may mean; one where it is plain, none where it is unknown."""
         if parts not in self._cache:
-            self._cache[parts] = self._search(parts)
+            self._cache[parts] = self._search(parts) or self._with_somebody(parts)
         return self._cache[parts]
 
     def _search(self, parts: tuple[str, ...]) -> list[Found]:
@@ -94,6 +106,11 @@ class Scope:
                 if found:
                     return found
         return []
+
+    def _with_somebody(self, parts: tuple[str, ...]) -> list[Found]:
+        return [
+            Found(path, node, False) for path, node in self._carried.items() if path[-len(parts) :] == parts
+        ]
 
     def _shallowest(
         self, node: SetNode, path: tuple[str, ...], parts: tuple[str, ...], props: bool
@@ -139,10 +156,22 @@ class Scope:
         prop = self._catalog.get("prop", node.prop)
         return (*getattr(prop, "spots", ()), *getattr(prop, "parts", ()))
 
+    def prop(self, name: str) -> DefinitionBase | None:
+        """The definition of a prop; None where there is none."""
+        return self._catalog.get("prop", name)
+
+    def prop_of(self, node: SetNode) -> DefinitionBase | None:
+        """The definition of what stands at a node."""
+        return None if node.prop is None else self.prop(node.prop)
+
+    def props(self) -> tuple[str, ...]:
+        """Names of all props there are."""
+        return self._catalog.names("prop")
+
     def node_of(self, target: Target) -> SetNode | None:
         """The tree's node of a target (for a spot, the node it is on)."""
         path = target.path[:-1] if target.kind == "spot" else target.path
-        return node_at(self.root, path)
+        return self._carried.get(path) or node_at(self.root, path)
 
     def has_seat(self, target: Target) -> bool:
         """Whether one can sit at a target."""
@@ -181,8 +210,9 @@ class Scope:
 
     def _unknown(self, name: Name, report: Report) -> None:
         top = node_at(self.root, self.room) or self.root
-        near = _names(top)
-        every = _names(self.root)
+        carried = list(dict.fromkeys(path[-1] for path in self._carried))
+        near = [*_names(top), *carried]
+        every = [*_names(self.root), *carried]
         if len(name.parts) > 1:
             self._unknown_part(name, report)
             return

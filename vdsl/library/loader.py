@@ -61,9 +61,11 @@ class Catalog:
         return catalog
 
     def _check_own(self, kind: str, definition: DefinitionBase | None) -> None:
-        """What of a definition can only be checked with the others at hand: the props of a set."""
+        """What of a definition can only be checked with the others at hand: the props it names."""
         if kind == "set" and definition is not None:
             import_module("vdsl.lang.definitions.set").check_set(definition, self, self.report)
+        if kind == "action" and (at := getattr(definition, "brings_at", None)) is not None:
+            import_module("vdsl.lang.bringing").check_brings(definition, at, self, self.report)
 
     def names(self, kind: str) -> tuple[str, ...]:
         """All names of a kind: own ones first, then the library's, each in order of the alphabet."""

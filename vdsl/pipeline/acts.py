@@ -90,9 +90,9 @@ class Acts:
         if self.checked.report.has_errors:
             raise ScriptError(self.checked.report)
         used = self._scenes.values()
-        keep = {run.text for run in used}
+        keep = {run.props for run in used}
         self.warm.staged = {k: v for k, v in self.warm.staged.items() if k in keep}
-        marks = {run.text + mark for run in used for mark in run.marks}
+        marks = {run.props + mark for run in used for mark in run.marks}
         self.warm.states = {k: v for k, v in self.warm.states.items() if k in marks}
 
     def act(self, line: StoryLine) -> Act:
@@ -123,7 +123,8 @@ class Acts:
 class _SceneRun:
     """One scene, built when it is first needed.
 
-    text: digest of how it opens; marks: of the state before each line, and after the last one
+    text: digest of how it opens; props: of that and of all that people bring to it
+    marks: of the state before each line, and after the last one
     texts: of what happens on each line
     """
 
@@ -131,6 +132,7 @@ class _SceneRun:
         self.acts, self.scene, self.lines = acts, scene, lines
         checked = acts.checked
         self.text = scene_text(checked.storyboard, number, checked.catalog)
+        self.props = digest(self.text, scene.carried)
         drawn = [line.shots[0].drawn_as if line.shots else "" for line in lines]
         self.texts = [
             digest(line_text(line, checked.catalog), name) for line, name in zip(lines, drawn, strict=True)
@@ -150,11 +152,11 @@ class _SceneRun:
     def staged(self) -> StagedScene:
         if self._staged is None:
             warm = self.acts.warm.staged
-            if self.text not in warm:
+            if self.props not in warm:
                 self.acts.check_models()
                 cast = self.acts.checked.storyboard.characters
-                warm[self.text] = self.acts.hand.stage(self.scene, cast, self.lines)
-            self._staged = warm[self.text]
+                warm[self.props] = self.acts.hand.stage(self.scene, cast, self.lines)
+            self._staged = warm[self.props]
         return self._staged
 
     @property
@@ -180,7 +182,7 @@ class _SceneRun:
         seed = self.acts.checked.storyboard.seed
         for k in range(len(self.lines)):
             begun = perf_counter()
-            key = digest("state", self.acts.code, self.text, self.marks[k], self.texts[k], seed)
+            key = digest("state", self.acts.code, self.props, self.marks[k], self.texts[k], seed)
             self.marks.append(self._mark(k + 1, key, lambda k=k: self._advanced(k)))  # type: ignore[misc]
             self.acts.played(perf_counter() - begun)
 
@@ -199,7 +201,7 @@ class _SceneRun:
                 self.acts.cache.put(key, {"value": data})
         mark = hashlib.sha256(data).hexdigest()
         if k in self._here:
-            self.acts.warm.states[self.text + mark] = self._here[k]
+            self.acts.warm.states[self.props + mark] = self._here[k]
         else:
             self._packed[k] = data
         return mark
@@ -207,7 +209,7 @@ class _SceneRun:
     def state(self, k: int) -> SceneState:
         """Before the k-th line."""
         if k not in self._here:
-            warm = self.acts.warm.states.get(self.text + self.marks[k])
+            warm = self.acts.warm.states.get(self.props + self.marks[k])
             self._here[k] = warm if warm is not None else self._restored(k)
         return self._here[k]
 

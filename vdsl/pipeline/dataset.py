@@ -59,9 +59,28 @@ class _Filmed:
     labels: list[tuple[Any, ...]]
 
 
-def made(seed: int) -> dict[str, Any]:
+@dataclass(frozen=True)
+class _Making:
+    """What every process that films needs to know.
+
+    pictures: share of the stories for training whose clips get pictures; all clips of the others are bare
+    """
+
+    seed: int
+    device: str
+    size: int
+    pictures: float = 1.0
+
+    def pictured(self, scene: Scene) -> bool:
+        """Whether a scene's clips get pictures: all for testing do, and of the others every so many-th."""
+        n = scene.number
+        return scene.split == "test" or int((n + 1) * self.pictures) > int(n * self.pictures)
+
+
+def made(seed: int, pictures: float = 1.0) -> dict[str, Any]:
     """What a training set says of how it is made: sets that differ in it are not put together."""
-    return {"seed": seed, "look": LOOK_VERSION, "recipe": _RECIPE}
+    shared = {} if pictures == 1.0 else {"pictures": pictures}
+    return {"seed": seed, "look": LOOK_VERSION, "recipe": _RECIPE, **shared}
 
 
 def generate(
@@ -72,21 +91,27 @@ def generate(
     progress: Progress | None = None,
     size: int = 224,
     processes: int | None = None,
+    pictures: float = 1.0,
 ) -> int:
-    """Write at least ``clips`` clips into ``folder``, going on where an earlier call stopped.
+    """Write at least ``clips`` clips with pictures into ``folder``, going on where an earlier call stopped.
 
-    size: side of the frames in pixels; processes: None for one on each core. Returns how many there are.
+    size: side of the frames in pixels; processes: None for one on each core; pictures: share of the stories
+    for training whose clips get pictures, where the rest are wanted for their guides. Returns how many clips
+    have pictures.
     Raises OSError or :class:`ranker.RankerError` for a folder that cannot be used or holds another kind of
     set.
     """
     watcher = progress or Silence()
-    with ShardWriter(folder, WORDS, (size, size), SEGMENTS, shard=1 << 30, made=made(seed)) as writer:
+    with ShardWriter(
+        folder, WORDS, (size, size), SEGMENTS, shard=1 << 30, made=made(seed, pictures)
+    ) as writer:
         first = 1 + max((int(label.about.get("story", -1)) for label in writer.labels), default=-1)
         begun, last = len(writer), perf_counter()
         watcher.begin("clips", max(0, clips - begun), "clips")
         if begun >= clips:
             return begun
-        for story in _stories(first, seed, device, size, processes or min(_cores(), _PROCESSES), folder):
+        making = _Making(seed, device, size, pictures)
+        for story in _stories(first, making, processes or min(_cores(), _PROCESSES), folder):
             for scene in story:
                 for k, label in enumerate(scene.labels):
                     writer.add(scene.frames[k] if k < len(scene.frames) else None, *label)
@@ -104,16 +129,14 @@ def _cores() -> int:
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
-def _stories(
-    first: int, seed: int, device: str, size: int, processes: int, folder: Path
-) -> Iterator[list[_Filmed]]:
+def _stories(first: int, making: _Making, processes: int, folder: Path) -> Iterator[list[_Filmed]]:
     """The filmed scenes of all stories from ``first`` on, story by story in their order.
 
     folder: where processes leave for a moment what they filmed. Through a pipe it would go in pieces, and who
     waits for the rest of what a terminated process began to send waits for ever.
     """
     if processes == 1:
-        film = _maker(seed, device, size)
+        film = _maker(making)
         yield from map(film, count(first))
         return
     context = multiprocessing.get_context("spawn")  # a forked process would share a renderer's threads
@@ -123,7 +146,7 @@ def _stories(
         places.put(place)
     waiting: deque[Future[Path]] = deque()
     between = tempfile.TemporaryDirectory(prefix=".filmed-", dir=folder)
-    about = (places, seed, device, size, Path(between.name))
+    about = (places, making, Path(between.name))
     pool = ProcessPoolExecutor(processes, context, _settle, about)
     try:
         for number in count(first):
@@ -145,14 +168,14 @@ def _stories(
 _here: list[Callable[[int], Path]] = []
 
 
-def _settle(places: Queue[int], seed: int, device: str, size: int, between: Path) -> None:
+def _settle(places: Queue[int], making: _Making, between: Path) -> None:
     """Make this process one that films stories, on a core of its own; whoever began it says when to stop."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     place = places.get()
     with suppress(AttributeError, OSError):  # where processes cannot be kept to cores, they share them
         cores = sorted(os.sched_getaffinity(0))
         os.sched_setaffinity(0, {cores[place % len(cores)]})
-    film = _maker(seed, device, size)
+    film = _maker(making)
 
     def left(number: int) -> Path:
         path = between / str(number)
@@ -175,24 +198,25 @@ def _taken(path: Path) -> list[_Filmed]:
     return found
 
 
-def _maker(seed: int, device: str, size: int) -> Callable[[int], list[_Filmed]]:
+def _maker(making: _Making) -> Callable[[int], list[_Filmed]]:
     """What films a story by its number."""
-    troupe, camerawork = Troupe(seed), Camerawork(device)
+    troupe, camerawork = Troupe(making.seed), Camerawork(making.device)
 
     def film(number: int) -> list[_Filmed]:
         scenes = troupe.scenes(number, _PROPOSALS)
-        return [filmed for scene in scenes if (filmed := _filmed(scene, seed, camerawork, size)) is not None]
+        return [filmed for scene in scenes if (filmed := _filmed(scene, making, camerawork)) is not None]
 
     return film
 
 
-def _filmed(scene: Scene, seed: int, camerawork: Camerawork, size: int) -> _Filmed | None:
+def _filmed(scene: Scene, making: _Making, camerawork: Camerawork) -> _Filmed | None:
     """All clips of a scene; those that are drawn at a time share its moments."""
-    clips = clips_of(scene, np.random.default_rng((seed, scene.number, scene.shots[0].line)))
+    clips = clips_of(scene, np.random.default_rng((making.seed, scene.number, scene.shots[0].line)))
     clips.sort(key=lambda clip: clip.bare)
     if not clips:
         return None
-    count = sum(not clip.bare for clip in clips)
+    count = sum(not clip.bare for clip in clips) if making.pictured(scene) else 0
+    size = making.size
     drawn: list[Seen] = []
     for part, pictures in ((clips[:count], True), (clips[count:], False)):
         for begin in range(0, len(part), _DRAWN_AT_ONCE):

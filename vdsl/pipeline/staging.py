@@ -11,10 +11,11 @@ from runtime.world import World
 from ..lang.definitions.cast import CastDef
 from ..lang.definitions.files import PERSON, FileCastDef
 from ..lang.definitions.set import SetDef
-from ..lang.ir import Character, Scene, StoryLine
+from ..lang.ir import Carried, Character, Scene, StoryLine
 from ..library import Catalog
 from ..stage.assemble import StagedScene, assemble
 from ..stage.cache import load_world
+from ..stage.carried import with_carried
 from ..stage.cast import body_spec
 from ..stage.models import file_person
 
@@ -24,7 +25,7 @@ class Stagehand:
 
     def __init__(self, catalog: Catalog) -> None:
         self._catalog = catalog
-        self._worlds: dict[tuple[str, str, tuple[str, ...]], World] = {}
+        self._worlds: dict[tuple[str, str, tuple[str, ...], tuple[Carried, ...]], World] = {}
         self._bodies: dict[BodySpec, Body] = {}
 
     def stage(self, scene: Scene, characters: Sequence[Character], lines: Sequence[StoryLine]) -> StagedScene:
@@ -42,11 +43,12 @@ class Stagehand:
         return assemble(self.world(scene), {c.name: self.body(c) for c in characters if c.name in present})
 
     def world(self, scene: Scene) -> World:
-        key = (scene.set, scene.time, scene.room)
+        key = (scene.set, scene.time, scene.room, scene.carried)
         if key not in self._worlds:
             definition = self._catalog.get("set", scene.set)
             assert isinstance(definition, SetDef), scene.set
-            self._worlds[key] = load_world(definition, self._catalog, scene.time, scene.room)
+            empty = load_world(definition, self._catalog, scene.time, scene.room)
+            self._worlds[key] = with_carried(empty, scene.carried, self._catalog)
         return self._worlds[key]
 
     def body(self, character: Character) -> Body:

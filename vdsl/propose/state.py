@@ -24,7 +24,8 @@ _APART = 1.1  # least distance between people who are placed by default, metres
 class SceneState:
     """A scene at the end of a line.
 
-    actors: by name, in the storyboard's order; props: by object id, every movable thing of the set
+    actors: by name, in the storyboard's order; props: by object id, every movable thing of the set, and what
+        people have taken out (what they have about them is not among them)
     room: path of the room the scene plays in, () for the whole set
     """
 
@@ -49,7 +50,7 @@ def opening_state(
     props = {
         o.id: PropState(np.array(o.world_from_object, float), grip_of(o), hinge=o.hinge, open=o.ajar)
         for o in world.objects
-        if o.mesh is not None
+        if o.mesh is not None and not o.bearer
     }
     actors: dict[str, ActorState] = {}
     placed = {p.character: p for p in scene.placements}
@@ -67,7 +68,10 @@ def opening_state(
         if placement.facing is not None and placement.character in ordered:
             state = SceneState(world, ordered, props, scene.room)
             ordered[placement.character] = _facing(ordered[placement.character], placement.facing, state)
-    return SceneState(world, ordered, props, scene.room)
+    # Here: what is in a hand needs this module's state, and a scene opens with it.
+    from .bringing import holding_at_first
+
+    return holding_at_first(scene, SceneState(world, ordered, props, scene.room))
 
 
 def grip_of(item: WorldObject) -> tuple[float, float, float]:

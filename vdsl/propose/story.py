@@ -28,6 +28,7 @@ from ..stage.actions import build_clip
 from .advice import advise
 from .arriving import arrival, shows_arrival
 from .beholding import beholding
+from .bringing import with_things_at_hand
 from .cameras import Filming, propose_cameras
 from .drawing import generator
 from .state import SceneState, opening_state
@@ -65,7 +66,7 @@ def tell(
     report = report if report is not None else Report()
     cuts = shot is not None and filming.rig != "paper" and shows_arrival(shot)
     shot = shot if shot is not None else (line.shots[0] if line.shots else None)
-    state = beholding(state, line)
+    state = beholding(with_things_at_hand(state, line, filming.catalog), line)
     errands = _errands(state, line, filming, shot, report)
     cuts, proposals, end = cuts and _comes_first(line, errands, filming), [], state
     for index, (name, path, motion) in enumerate(_motions(state, errands, filming, shot, most)):
@@ -83,7 +84,7 @@ def motions(
 ) -> list[tuple[str, SceneMotion]]:
     """The motions :func:`tell` makes of a line, by the names of their variants, with all the engine says."""
     shot = line.shots[0] if line.shots else None
-    state = beholding(state, line)
+    state = beholding(with_things_at_hand(state, line, filming.catalog), line)
     errands = _errands(state, line, filming, shot, report)
     return [(name, motion) for name, _, motion in _motions(state, errands, filming, shot, most)]
 

@@ -16,6 +16,7 @@ from runtime.nav import Discs, nearest_free
 
 from ..lang.diagnostics import Report
 from ..lang.ir import Beat, Shot, Target
+from .bringing import with_brought
 from .cameras import find_object
 from .hindrance import report_no_seat, report_nothing_opens, report_unreachable
 from .opening import Way, part_point, part_to_move, stand_to_move, stands, ways_through
@@ -57,6 +58,7 @@ def errand(
 
     taken: places where others of the same line are about to stand
     """
+    beat = with_brought(beat, clip, state)
     found = _errand(beat, clip, shot, state, skeletons, taken, report, ways)
     return (
         None

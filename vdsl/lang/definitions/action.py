@@ -6,13 +6,14 @@ person does in the time of an action is read by :mod:`.timeline`.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 from runtime.motion.feelings import FEELINGS
 from runtime.motion.words import POSTURES
 
 from .. import ast
 from ..diagnostics import Report
+from ..source import Span
 from .reader import Reader, unknown_entry
 from .timeline import MOVES, Part, mirrored, read_part, scaled
 from .types import DefinitionBase
@@ -20,7 +21,7 @@ from .types import DefinitionBase
 TARGET_KINDS = ("place", "object", "character")
 SETTINGS = ("target", "second", "duration", "travel", "stride", "cadence", "gait", "sit", "posture", "needs",
             "faces", "turn", "apart", "along", "hold", "feeling", "group", "example", "also", "partner",
-            "variant")  # fmt: skip
+            "variant", "brings")  # fmt: skip
 CHANGES = ("amplitude", "tempo", "mirror", "duration", "stride", "cadence", "gait", "instead", "partner")
 TRAVELS = ("none", "walk", "run", "skip", "crawl")
 #: Which drawer of the library an action lies in.
@@ -74,6 +75,8 @@ class ActionDef(DefinitionBase):
     goes: whether the way of travelling is written, so that one goes to the target whatever is done there
     also: other words for it; otherwise: what it is done to where that is required and not said, if the scene
     has such a thing, "" for nothing
+    brings: the prop that whoever does it has about them and takes out where the line names nothing to do it
+        with, "" for none; unless_held: not where anything is in a hand already
     """
 
     target: str
@@ -99,6 +102,9 @@ class ActionDef(DefinitionBase):
     goes: bool = False
     also: tuple[str, ...] = ()
     otherwise: str = ""
+    brings: str = ""
+    unless_held: bool = False
+    brings_at: Span | None = field(default=None, compare=False, repr=False)
 
 
 def read_action(definition: ast.Definition, report: Report) -> ActionDef | None:
@@ -134,6 +140,9 @@ def read_action(definition: ast.Definition, report: Report) -> ActionDef | None:
     action = _settings(definition, settings, tuple(all_variants))
     for reader in (*settings.values(), *variants):
         reader.done()
+    if action.brings_at is not None and action.needs not in ("target", "second"):
+        help = "`needs target` or `needs second` says what it is for"
+        report.error("VDS145", action.brings_at, label="this action needs nothing in a hand", help=help)
     return action
 
 
@@ -169,6 +178,11 @@ def _settings(
         goes="travel" in settings and travel != "none",
         also=tuple(word for word in others if word),
         otherwise=settings["target"].word("otherwise", "") if "target" in settings else "",
+        brings=settings["brings"].value_word(0, "") if "brings" in settings else "",
+        brings_at=next((value.span for value in settings["brings"].entry.values), None)
+        if "brings" in settings
+        else None,
+        unless_held=settings["brings"].word("unless", "", ("held",)) != "" if "brings" in settings else False,
     )  # fmt: skip
 
 

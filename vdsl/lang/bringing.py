@@ -1,0 +1,128 @@
+"""Things people bring to a scene: what they hold when it opens, and what they take out of a pocket.
+
+Assumes a scene whose set and people are known. Guarantees that everything brought can be carried, and that
+who needs the same thing twice brings it once.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from . import ast
+from .catalog import CatalogLike
+from .definitions.types import DefinitionBase
+from .diagnostics import Report, nearest
+from .evaluate import evaluate_arguments
+from .ir import Beat, Carried, Target
+from .scope import Scope
+from .source import Span
+
+if TYPE_CHECKING:
+    from .placement import SceneBeingRead
+
+
+def held_at_first(
+    written: ast.Name | ast.Call, who: str, scene: SceneBeingRead, report: Report
+) -> Target | None:
+    """``holding bag``, ``holding bag(color navy)``: a thing of the scene that nobody holds yet, else a prop.
+
+    None where it was reported that there is no such thing, or that it is none to hold.
+    """
+    name = written.callee if isinstance(written, ast.Call) else written
+    if scene.scope is None:
+        return None
+    there = scene.scope.look_up(name.parts) if isinstance(written, ast.Name) else []
+    if there and not (len(there) == 1 and scene.hands.holder(there[0].path)):
+        target = scene.scope.find(name, report)
+        if target is None:
+            return None
+        node = scene.scope.node_of(target)
+        prop = scene.scope.prop_of(node) if node is not None and target.kind == "object" else None
+        if not getattr(prop, "movable", False):
+            _cannot_be_held(name, report)
+            return None
+        scene.hands.give(who, target.path)
+        return target
+    prop = scene.scope.prop(name.text)
+    if prop is None:
+        known = scene.scope.props()
+        if name.text not in known:
+            meant = nearest(name.text, known)
+            report.error(
+                "VDS060",
+                name.span,
+                label=f"nothing is called `{name.text}` here, and no prop is",
+                help="`vdsc assets props --search WORDS` finds one",
+                suggestion=meant,
+                fix=meant,
+            )
+        return None
+    if not getattr(prop, "movable", False):
+        _cannot_be_held(name, report)
+        return None
+    arguments: dict[str, float | str] = {}
+    if isinstance(written, ast.Call):
+        arguments = evaluate_arguments(written.arguments, prop.parameters, {}, report, prop.name)
+    thing = Carried(who, name.text, name.text, tuple(arguments.items()), held=True)
+    return _carry(thing, scene, name.span)
+
+
+def _cannot_be_held(name: ast.Name, report: Report) -> None:
+    report.error(
+        "VDS081",
+        name.span,
+        label=f"`{name.text}` is nothing one holds",
+        help="what can be carried has a `grip`; `vdsc assets props` says which do",
+    )
+
+
+def _carry(thing: Carried, scene: SceneBeingRead, span: Span) -> Target:
+    assert scene.scope is not None
+    scene.carried[thing.path] = thing
+    scene.scope.carry(thing.path, thing.prop, span)
+    if thing.held:
+        scene.hands.give(thing.who, thing.path)
+    return Target("object", thing.path, thing.name, span)
+
+
+def bring(beat: Beat, scene: SceneBeingRead, catalog: CatalogLike) -> Beat:
+    """The beat with what its action is done with, where its line names nothing.
+
+    That is one of the kind that is in a hand already, else one that is taken out.
+    """
+    definition = catalog.get("action", beat.action)
+    brings: str = getattr(definition, "brings", "")
+    slot: str = getattr(definition, "needs", "none")
+    if not brings or slot not in ("target", "second") or scene.scope is None:
+        return beat
+    if getattr(beat, slot) is not None:
+        return beat
+    held = scene.hands.held_by(beat.character)
+    for path in held:
+        if _kind_of(path, scene.scope) == brings:
+            return replace(beat, brought=Target("object", path, path[-1], beat.span))
+    if held and getattr(definition, "unless_held", False):
+        return beat
+    path = (beat.character, brings)
+    if path not in scene.carried:
+        if not getattr(scene.scope.prop(brings), "movable", False):
+            return beat
+        return replace(beat, brought=_carry(Carried(beat.character, brings, brings), scene, beat.span))
+    return replace(beat, brought=Target("object", path, brings, beat.span))
+
+
+def check_brings(definition: DefinitionBase, at: Span, catalog: CatalogLike, report: Report) -> None:
+    """Report an action that brings what is no prop, or none to carry; ``at``: where it says so."""
+    name: str = getattr(definition, "brings", "")
+    known = catalog.names("prop")
+    if name not in known:
+        meant = nearest(name, known)
+        report.error("VDS115", at, label=f"there is no prop `{name}`", suggestion=meant, fix=meant)
+    elif (prop := catalog.get("prop", name)) is not None and not getattr(prop, "movable", False):
+        report.error("VDS145", at, label=f"`{name}` is nothing one holds")
+
+
+def _kind_of(path: tuple[str, ...], scope: Scope) -> str | None:
+    node = scope.node_of(Target("object", path, "", scope.root.span))
+    return None if node is None else node.prop

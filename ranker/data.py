@@ -360,6 +360,7 @@ class Dataset:
             "negatives": len(framed) - int(framed.sum()),
             **({"bare": int(self.bare.sum())} if self.bare.any() else {}),
             "groups": len({la.group for la in self.labels}),
+            **({"hints": list(self.hints[0])} if self.hints[0] else {}),
             **({"made": self.made} if self.made else {}),
         }
 

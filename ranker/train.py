@@ -35,7 +35,8 @@ from .int8 import Ranges, measured_ranges
 from .losses import binary_loss, class_loss, contrast_loss, fault_loss, hint_loss, liking_loss
 from .model import OF_GUIDES, ShotRanker, frame_times, normalised
 from .motion import motions
-from .weights import load_model, load_tensors, save_weights
+from .starting import take_over
+from .weights import load_model, save_weights
 
 #: Clips by which eight bits are fitted, and by which they are compared with float32.
 _MEASURED, _COMPARED = 64, 200
@@ -102,7 +103,7 @@ def train(
             raise RankerError(f"{data_dir}: its clips have no guides, and the recipe looks at nothing else")
     moved = torch.from_numpy(motions(data)) if config.motion else None
     model = ShotRanker(shape)
-    began, anchor = take_over(model, start) if start else (None, {})
+    began, anchor = take_over(model, start, data.hints[0]) if start else (None, {})
     settle(model, data, learn, config.seed)
     model.to(device)
     model.to(memory_format=torch.channels_last)  # type: ignore[call-overload]
@@ -169,7 +170,8 @@ def train(
         with torch.no_grad():  # after the checkpoint, so that a run that goes on does it once
             for name, parameter in model.named_parameters():
                 if name in anchor:
-                    parameter.lerp_(anchor[name].to(parameter), config.anchored)
+                    first = anchor[name].to(parameter)  # NaN where there is nothing to go back to
+                    parameter.lerp_(first.where(first.isfinite(), parameter), config.anchored)
         # Small pictures leave batch norm with the wrong statistics for full ones.
         calibrate(model, data, framed, config, device)
         ranges = int8_ranges(model.cpu(), data, framed, config.seed)
@@ -191,23 +193,6 @@ def train(
     about = {"training": training, "data": data.about(), "measured": measured}
     save_weights(out / "weights", model, **about, ranges=ranges)
     return measured
-
-
-def take_over(model: ShotRanker, folder: str | Path) -> tuple[str, dict[str, Tensor]]:
-    """Give a network all of other weights that it has a place for, and return their digest and these."""
-    other, card = load_tensors(folder)
-    ours = model.state_dict()
-    fit = {k: v for k, v in other.items() if k in ours and v.shape == ours[k].shape}
-    words, others = model.config, card.model
-    if words.backbone != others.backbone:
-        raise RankerError(
-            f"{folder}: are weights of a {others.backbone}, and no {words.backbone} can start from them"
-        )
-    for name in ("movement", "scale", "angle"):  # an output is of a word
-        if getattr(words, f"{name}s") != getattr(others, f"{name}s"):
-            fit = {k: v for k, v in fit.items() if not k.startswith(name)}
-    model.load_state_dict(ours | fit)
-    return card.sha256, fit
 
 
 def settle(model: ShotRanker, data: Dataset, clips: NDArray[np.int64], seed: int = 0) -> None:

@@ -18,7 +18,8 @@ from ranker.data import Dataset, ShardWriter, Words
 from ranker.errors import RankerError
 from ranker.infer import Ranker
 from ranker.model import Pool, ShotRanker, frame_times, normalised
-from ranker.train import take_over, train
+from ranker.starting import take_over
+from ranker.train import train
 from ranker.weights import load_model, save_weights
 
 
@@ -120,6 +121,34 @@ def test_a_training_starts_from_other_weights_as_far_as_they_fit(tmp_path: Path)
     torch.testing.assert_close(plain.backbone.conv1.weight, other.backbone.conv1.weight.half().float())
     with pytest.raises(RankerError, match="of a resnet18, and no resnet50"):
         take_over(ShotRanker(model_config(backbone="resnet50")), tmp_path / "other")
+
+
+def test_what_is_told_of_goes_by_its_name_where_more_is_told(tmp_path: Path) -> None:
+    torch.manual_seed(3)
+    before, now = ["a", "fault_b", "fault_d", "z"], ["a", "fault_b", "fault_c", "fault_d", "y", "z"]
+    shape = model_config(moments=True, marks=2, guides=16, motion=8)
+    other = ShotRanker(replace(shape, measures=4, first_fault=1, faults=2))
+    save_weights(tmp_path / "other", other, data={"hints": before})
+    wider = replace(shape, measures=6, first_fault=1, faults=3)
+    ours, fresh = ShotRanker(wider), ShotRanker(wider)
+    fresh.load_state_dict(ours.state_dict())
+    _, taken = take_over(ours, tmp_path / "other", now)
+    kept = [0, 1, 3, 5]
+    for name in ("reader.weight", "reader_guided.bias", "reader_moved.weight"):
+        new, old = ours.state_dict()[name], other.state_dict()[name].half().float()
+        torch.testing.assert_close(new[kept], old, atol=1e-3, rtol=1e-3)
+        assert torch.equal(new[[2, 4]], fresh.state_dict()[name][[2, 4]])  # nothing is known of these
+        assert taken[name][[2, 4]].isnan().all()
+    new, old = ours.state_dict()["reasons_guided.0.weight"], other.state_dict()["reasons_guided.0.weight"]
+    torch.testing.assert_close(new[:, [*kept, *range(6, 12)]], old.half().float())
+    new, old = ours.state_dict()["straight.weight"], other.state_dict()["straight.weight"].half().float()
+    judged = len(old) - 4
+    torch.testing.assert_close(new[[*range(judged), *(judged + k for k in kept)]], old)
+    with torch.no_grad():
+        other.faults_guided.copy_(torch.tensor([0.3, 0.7]))
+    save_weights(tmp_path / "other", other, data={"hints": before})
+    take_over(ours, tmp_path / "other", now)
+    assert ours.faults_guided.tolist() == pytest.approx([0.3, 1.0, 0.7])
 
 
 def test_weights_that_are_anchored_end_between_where_they_began_and_where_they_got(tmp_path: Path) -> None:

@@ -6,6 +6,8 @@ Arms hang and swing by angles, play their keys, then go where hands have to be b
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -138,6 +140,9 @@ class Performer(Trunk):
             tracks.position(self.figure), tracks.weight, rotation, tracks.turning, tracks.around
         )
         palms = self.figure.arms(pose, goals, self.yaw)
+        if tracks.one_goes_with_the_other:
+            goals = replace(goals, position=tracks.position(self.figure, palms))
+            palms = self.figure.arms(pose, goals, self.yaw)
         self.tracks, self.goals, self.palms = tracks, goals.position, palms
         self.goal_rotation = rotation
         c = self.channels

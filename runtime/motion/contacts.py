@@ -149,8 +149,18 @@ class HandTracks:
             if layer.place_of in ("partner.back", "partner.waist"):
                 self.around[layer.hand] = np.maximum(self.around[layer.hand], layer.weight)
 
-    def position(self, figure: Figure) -> Array:
-        """Palms' places [2, T, 3] for the torso as it is posed now."""
+    @property
+    def one_goes_with_the_other(self) -> bool:
+        """Whether a hand goes to what the other holds while that is where its arm's angles have it."""
+        held = (x for x in self.layers if x.place_of == "held" and x.led is not None)
+        return any(bool((x.weight * (1 - self.weight[1 - x.hand]) > 1e-3).any()) for x in held)
+
+    def position(self, figure: Figure, palms: Array | None = None) -> Array:
+        """Palms' places [2, T, 3] for the torso as it is posed now.
+
+        palms: [2, T, 3], where they come to be, if that is known: from there the other hand goes to what is held;
+        else from where the one that holds is drawn to
+        """
         out = figure.shoulders()
         total = np.zeros(self.weight.shape)
         cos, sin = np.cos(self.yaw), np.sin(self.yaw)
@@ -159,7 +169,7 @@ class HandTracks:
             k, w = layer.hand, layer.weight
             if layer.place_of == "held" and layer.led is not None:
                 along = self._on_held(1 - k, layer.led[0], layer.offset)
-                at = _slid(out[1 - k], along, figure, k)
+                at = _slid((out if palms is None else palms)[1 - k], along, figure, k)
             else:
                 at = _layer_place(layer, figure, self.yaw)
                 ahead, outward, up = layer.offset

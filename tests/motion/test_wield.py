@@ -59,3 +59,11 @@ def test_the_point_of_what_is_held_leads() -> None:
     placed = motion.props[1][int(2.5 * FPS)]
     end = placed[:3, :3] @ np.array([0.11, 0.0, 0.02]) + placed[:3, 3]
     assert np.linalg.norm(end - aim.position) < 0.03
+
+
+def test_the_other_hand_finds_what_an_arm_holds_by_its_angles() -> None:
+    """The hand that holds goes nowhere; the other one is to come to where its arm has it all the same."""
+    placed, left, right = played(Reach("left", "held", 0.1, 0.4, 1.0, 1.0, (-0.04, 0.0, 0.0)))
+    assert right[2] < 1.2  # and not at its shoulder
+    there = placed[:3, :3] @ np.array([-0.15, 0.0, 0.02]) + placed[:3, 3]
+    assert np.linalg.norm(there - left) < 0.04

@@ -151,3 +151,8 @@ def test_every_action_brings_what_it_is_done_with(name: str) -> None:
     hand = definition.needs_hand[:1] or "r"
     assert seen(scene, path) > 0.05
     assert away(scene, path, "anna", hand) < 0.16
+
+
+def test_a_tool_changes_hands_where_the_action_needs_it_in_the_other() -> None:
+    (swing,) = played("(anna swing bat)\n", "fountain holding bat")
+    assert away(swing, ("anna", "bat"), "anna", "r") < 0.15

@@ -50,6 +50,8 @@ def with_things_at_hand(state: SceneState, line: StoryLine, catalog: Catalog | N
         for item in named:
             if item.bearer in state.actors and item.id not in state.props:
                 state = _in_hand(item, item.bearer, state, getattr(action, "needs_hand", "")[:1])
+        if isinstance(action, ActionDef) and action.needs_hand:
+            state = _in_the_right_hand(beat, action, state)
     return state
 
 
@@ -100,6 +102,22 @@ def _put_away(who: str, kept: set[int], state: SceneState) -> SceneState:
     props = {k: p for k, p in state.props.items() if k not in away}
     held = tuple(pair for pair in actor.held if pair[1] not in away)
     return _with_actor(who, replace(actor, held=held), replace(state, props=props))
+
+
+def _in_the_right_hand(beat: Beat, action: ActionDef, state: SceneState) -> SceneState:
+    """With what the action is done with in the hand it has to be in, and what was there in the other."""
+    needed = _named(getattr(beat, action.needs, None) or beat.brought, state)
+    actor, wished = state.actors[beat.character], action.needs_hand[:1]
+    hand = next((h for h, k in actor.held if needed is not None and k == needed.id), wished)
+    if hand == wished:
+        return state
+    swapped = {"l": "r", "r": "l"}
+    held = tuple(sorted((swapped[h], k) for h, k in actor.held))
+    props = dict(state.props)
+    for h, k in held:
+        if k in props:
+            props[k] = replace(props[k], holder=(beat.character, h))
+    return _with_actor(beat.character, replace(actor, held=held), replace(state, props=props))
 
 
 def _set_down(who: str, kept: set[int], state: SceneState) -> SceneState:

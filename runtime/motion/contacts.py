@@ -158,8 +158,8 @@ class HandTracks:
     def position(self, figure: Figure, palms: Array | None = None) -> Array:
         """Palms' places [2, T, 3] for the torso as it is posed now.
 
-        palms: [2, T, 3], where they come to be, if that is known: from there the other hand goes to what is held;
-        else from where the one that holds is drawn to
+        palms: [2, T, 3], where they come to be, if that is known: from there the other hand goes to what is
+        held, else from where the one that holds is drawn to
         """
         out = figure.shoulders()
         total = np.zeros(self.weight.shape)

@@ -66,6 +66,7 @@ class ActionRow(Row):
     second: str
     second_kinds: tuple[str, ...]
     needs: str
+    brings: str
     posture: str
     feeling: str
     duration: float
@@ -101,6 +102,7 @@ def describe(catalog: Catalog, kind: str, name: str) -> Row | None:
             definition.second,
             definition.second_kinds,
             definition.needs,
+            definition.brings,
             definition.posture,
             definition.feeling,
             round(definition.variants[0].duration, 3),

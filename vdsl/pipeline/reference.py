@@ -108,10 +108,11 @@ def _actions(found: Sequence[ActionRow]) -> str:
         if not members:
             continue
         parts.append(f"\n## {GROUP_TITLES[group]}\n\n![{group}](images/actions-{group}.jpg)\n\n")
-        parts.append("| action | also | variants | as in |\n|---|---|---|---|\n")
+        parts.append("| action | also | brings | variants | as in |\n|---|---|---|---|---|\n")
         for row in members:
             also = ", ".join(word.replace("-", " ") for word in row.also)
-            parts.append(f"| `{row.name}` | {also} | {', '.join(row.variants)} | `({row.example})` |\n")
+            told = (f"`{row.name}`", also, row.brings, ", ".join(row.variants), f"`({row.example})`")
+            parts.append(f"| {' | '.join(told)} |\n")
     return "".join(parts)
 
 

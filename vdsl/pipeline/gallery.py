@@ -32,6 +32,7 @@ from .judging import GeometryJudge
 from .preview import Studio, at_rest
 from .trial import NoTrialError, stage_script
 
+POSTER = "poster"
 LOOKS = ("board", "clay", "ink")
 TIMES = ("day", "night")
 #: Pixels of a set's picture.
@@ -39,6 +40,14 @@ CELL = (400, 225)
 #: Pictures are drawn larger and shown smaller, save where their true size is the point.
 _FINER = 2
 _SHRINK = Image.Resampling.LANCZOS
+#: What the poster shows: sets with the hour, and people of the library.
+_POSTER_SETS = (
+    ("medieval_hall", "day"), ("station_platform", "day"), ("city_street", "night"),
+    ("cafe", "day"), ("forest", "day"), ("hospital", "day"),
+    ("beach", "day"), ("classroom", "day"), ("restaurant", "night"),
+)  # fmt: skip
+_POSTER_CAST = ("detective", "chef", "nurse", "old_woman", "astronaut", "girl", "knight", "pirate")
+_POSTER_COLUMNS, _GAP, _PAPER = 3, 6, (246, 243, 235)
 _NEAR = 6.0  # metres from the eye to the first person, at most
 _WHOLE = 3.4  # metres; who is nearer does not fit into the picture
 _BESIDE = math.radians(34)  # how far beside the first the second may stand
@@ -69,6 +78,7 @@ class Gallery:
             yield case.name, partial(self.case, case)
         for name in self.catalog.names("set"):
             yield f"set-{name}", partial(self.set, name)
+        yield POSTER, self.poster
 
     def case(self, case: Case) -> Image.Image:
         """The shots of a case in its looks, as a grid."""
@@ -108,6 +118,22 @@ class Gallery:
                 (image,) = studio.stills(act.staged, [eye], self._sized(CELL, _FINER), way)
                 cells.append((f"{name} · {time}", look, image.resize(self._sized(CELL), _SHRINK)))
         return grid(cells, len(LOOKS))
+
+    def poster(self) -> Image.Image:
+        """Some sets and people of the library on one sheet, without words."""
+        (width, height), studio = self._sized(CELL), Studio(self.catalog, camerawork=self._camerawork)
+        rows = -(-len(_POSTER_SETS) // _POSTER_COLUMNS)
+        across = _POSTER_COLUMNS * (width + _GAP) - _GAP
+        people = studio.cast_row(_POSTER_CAST, across // len(_POSTER_CAST))
+        sheet = Image.new("RGB", (across, rows * (height + _GAP) + people.height), _PAPER)
+        for k, (name, time) in enumerate(_POSTER_SETS):
+            act, eye = self._peopled(name, time)
+            (image,) = studio.stills(act.staged, [eye], self._sized(CELL, _FINER), at_rest(act))
+            row, column = divmod(k, _POSTER_COLUMNS)
+            at = column * (width + _GAP), row * (height + _GAP)
+            sheet.paste(image.resize((width, height), _SHRINK), at)
+        sheet.paste(people, (0, rows * (height + _GAP)))
+        return sheet
 
     def _peopled(self, name: str, time: str) -> tuple[Act, Eye]:
         """The set with Anna and Ben on spots of its largest place, and an eye at its entrance."""
@@ -162,7 +188,7 @@ def nearer(eye: Eye, person: tuple[float, float, float], world: World) -> Eye:
 
 def index(catalog: Catalog) -> str:
     """The gallery's page."""
-    parts = [_HEAD]
+    parts = [_HEAD, f"\n![Some sets and people of the library]({POSTER}.jpg)\n"]
     for case in CASES:
         parts.append(f"\n## {case.title}\n\n{case.about}\n\n![{case.title}]({case.name}.jpg)\n")
     parts.append("\n## Sets\n\nAnna and Ben stand in each, so that its size can be told.\n")

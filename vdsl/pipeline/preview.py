@@ -108,16 +108,27 @@ class Studio:
         for name in names:
             act = stage_script(floor_script(cast=name), name, self.own)
             way = at_rest(act)
-            person = way.performances[ACTOR]
-            x, y, z = person.position[0]
             turns = (-20, 70, 160) if len(names) == 1 else (-20,)
-            eyes = [
-                around((x, y, z + 0.98), person.heading[0] + math.radians(t), math.radians(86), 2.24, 70.0)
-                for t in turns
-            ]
+            eyes = [self._facing(act, turn) for turn in turns]
             for image in self.stills(act.staged, eyes, cell, way):
                 cells.append(("" if len(cells) and len(names) == 1 else name, "", image))
         return grid(cells, min(len(cells), 8))
+
+    def _facing(self, act: Act, turn: float = -20.0) -> Eye:
+        """An eye on the whole of who stands there; turn: degrees from before them."""
+        person = at_rest(act).performances[ACTOR]
+        x, y, z = person.position[0]
+        return around((x, y, z + 0.98), person.heading[0] + math.radians(turn), math.radians(86), 2.24, 70.0)
+
+    def cast_row(self, names: Sequence[str], width: int) -> Image.Image:
+        """People side by side without words, each in ``width`` pixels."""
+        cell = (width * 2, round(width * 2 / 0.46))
+        row = Image.new("RGB", (width * len(names), cell[1] // 2))
+        for k, name in enumerate(names):
+            act = stage_script(floor_script(cast=name), name, self.own)
+            (image,) = self.stills(act.staged, [self._facing(act)], cell, at_rest(act))
+            row.paste(image.resize((width, cell[1] // 2), Image.Resampling.LANCZOS), (width * k, 0))
+        return row
 
     # -- props -------------------------------------------------------------------------------
 

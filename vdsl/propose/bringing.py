@@ -18,6 +18,8 @@ from runtime.world import WorldObject
 from ..lang.definitions.action import ActionDef
 from ..lang.ir import Beat, Scene, StoryLine, Target
 from ..library import Catalog
+from .places import target_point
+from .pouring import POURERS, something_to_pour
 from .state import SceneState, grip_of
 from .subjects import find_object
 
@@ -48,11 +50,23 @@ def with_things_at_hand(state: SceneState, line: StoryLine, catalog: Catalog | N
         if isinstance(action, ActionDef) and takes_both_hands(action):
             state = _set_down(beat.character, {item.id for item in named}, state)
         for item in named:
-            if item.bearer in state.actors and item.id not in state.props:
+            if (
+                item.bearer in state.actors
+                and item.id not in state.props
+                and not _stands_about(item, beat, state)
+            ):
                 state = _in_hand(item, item.bearer, state, getattr(action, "needs_hand", "")[:1])
         if isinstance(action, ActionDef) and action.needs_hand:
             state = _in_the_right_hand(beat, action, state)
     return state
+
+
+def _stands_about(item: WorldObject, beat: Beat, state: SceneState) -> bool:
+    """Whether there is something near to pour from, so that nobody needs a bottle of their own."""
+    if item.kind not in POURERS or beat.second is not None or beat.target is None:
+        return False
+    near = state.actors[beat.character].position
+    return something_to_pour(beat, target_point(beat.target, state, near), state)[1] is not None
 
 
 def takes_both_hands(action: ActionDef) -> bool:

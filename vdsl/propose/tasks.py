@@ -21,12 +21,11 @@ from .cameras import find_object
 from .hindrance import report_no_seat, report_nothing_opens, report_unreachable
 from .opening import Way, part_point, part_to_move, stand_to_move, stands, ways_through
 from .places import ARM, Stop, approach, object_target, on_top_of, seat_of, target_point
+from .pouring import something_to_pour
 from .state import PERSON_RADIUS, SceneState
 
 _NEAR_ENOUGH = 1.25  # metres between people who can hand each other things or talk without moving
 _STANDS_THERE = 0.2  # metres from the place to stand within which nobody takes a step
-#: Kinds of props one pours from, where the script does not say which.
-_POURERS = ("coffee_pot", "teapot", "kettle", "jug", "pitcher", "bottle", "carton", "watering_can")
 
 
 @dataclass(frozen=True, eq=False)
@@ -85,7 +84,7 @@ def _errand(
     elif _puts(clip) and actor.held:
         beat, second = _somewhere_to_put(beat, target, state)
     if clip.needs == "second" and second is None and not actor.held:
-        beat, second = _something_to_pour(beat, target, state)
+        beat, second = something_to_pour(beat, target, state)
     if clip.seat == "down":
         seat = seat_of(beat.target, state, beat.character)
         if seat is None:
@@ -227,25 +226,6 @@ def _point(
         return None
     height = skeletons[target.path[-1]].height if target.kind == "character" else 1.65
     return target_point(target, state, near, height)
-
-
-def _something_to_pour(
-    beat: Beat, target: TargetPoint | None, state: SceneState
-) -> tuple[Beat, TargetPoint | None]:
-    """The nearest vessel to what is poured into, as the beat's second target."""
-    near = state.actors[beat.character].position
-    at = target.position if target is not None else near
-    best: tuple[float, Target, TargetPoint] | None = None
-    for item in state.world.objects:
-        if item.id in state.props and item.kind in _POURERS and state.props[item.id].holder is None:
-            vessel = object_target(item)
-            found = target_point(vessel, state, near)
-            away = math.dist(found.position, at)
-            if best is None or away < best[0]:
-                best = (away, vessel, found)
-    if best is None or best[0] > 2.5:
-        return beat, None
-    return replace(beat, second=best[1]), best[2]
 
 
 def _fetching(

@@ -8,6 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from vdsl.emit.words import beat_words
 from vdsl.lang import Source
 from vdsl.lang.ir import Shot, Storyboard
 from vdsl.pipeline.compare import compare
@@ -100,6 +101,15 @@ def test_one_of_two_equal_lines_removed_is_one_removed() -> None:
     twice = (LINES[4], LINES[0], LINES[4])
     found = compare(board(*twice), board(*twice[1:]))
     assert sorted(s.status for s in found.shots) == ["removed", "same", "same"]
+
+
+def test_what_somebody_holds_is_told_and_what_goes_without_saying_is_not() -> None:
+    head = HEAD.replace("facing window", "facing window holding bag")
+    found = told(board(*LINES), board(*LINES, head=head))
+    assert found[0].endswith("anna at door facing window holding bag; ben at chair_2 sitting")
+    (beat,), (said,) = (board(line).lines[0].beats for line in ("(ben enters)", "(ben enters the middle)"))
+    assert beat.target is not None
+    assert (beat_words(beat), beat_words(said)) == ("ben enter", "ben enter middle")
 
 
 def test_cast_scene_and_settings_are_told() -> None:

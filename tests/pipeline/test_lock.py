@@ -233,6 +233,10 @@ def test_digests_go_by_what_is_seen(script: Path) -> None:
     dressed = digests(text.replace("= woman", "= woman(top navy)"))
     assert dressed.keys() == before.keys()
     assert not set(dressed.values()) & set(before.values())
+    more = digests(text + "(anna phone) / (static medium)\n")
+    assert {k: more[k] for k in before} == before, "what she has about her shows only where she takes it out"
+    held = digests(text.replace("anna at door", "anna at door holding bag"))
+    assert not set(held.values()) & set(before.values())
     own = digests("prop kettle { box (1, 1, 1)m }\n" + text)
     changed = digests("prop kettle { box (1, 1, 2)m }\n" + text)
     assert own != changed, "the library's kitchen has a kettle, and the script's own comes first"

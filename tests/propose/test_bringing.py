@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from functools import cache
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -12,6 +13,8 @@ from runtime.body.skeleton import JOINT
 from vdsl.lang import Report, Source
 from vdsl.lang.definitions.action import ActionDef
 from vdsl.library import Catalog
+from vdsl.pipeline.acts import Acts
+from vdsl.pipeline.cache import Cache
 from vdsl.pipeline.compile import stage_acts
 from vdsl.pipeline.script import check_source
 from vdsl.pipeline.trial import action_script
@@ -156,3 +159,27 @@ def test_every_action_brings_what_it_is_done_with(name: str) -> None:
 def test_a_tool_changes_hands_where_the_action_needs_it_in_the_other() -> None:
     (swing,) = played("(anna swing bat)\n", "fountain holding bat")
     assert away(swing, ("anna", "bat"), "anna", "r") < 0.15
+
+
+def test_states_are_kept_where_a_line_before_brings_something_more(tmp_path: Path) -> None:
+    """Objects are numbered, and what is brought earlier comes first: a state of before must not be taken
+    for one of now."""
+
+    def last(lines: str) -> StoryProposal:
+        cache = Cache(tmp_path)
+        checked = check_source(Source("x.vds", HEAD.format(anna="fountain") + lines), Report())
+        acts = Acts(checked, cache, "code")
+        acts.play()
+        act = acts.act(checked.storyboard.lines[-1])
+        story = tell(act.state, act.line, act.filming, most=1).proposals[0]
+        guitar = next(o for o in act.staged.world.objects if o.path == ("anna", "guitar"))
+        moved = story.props[guitar.id]
+        wrist = story.performances["anna"].world_from_joint[:, JOINT["hand_r"], :3, 3]
+        assert np.linalg.norm(moved[:, :3, 3] - wrist, axis=1).max() < 0.8
+        return story
+
+    after = "(ben wave)\n(anna play guitar)\n(anna walk to ben)\n"
+    last(after)
+    last(after)
+    last("(ben phone)\n" + after)
+    last(after)

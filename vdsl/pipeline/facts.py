@@ -90,6 +90,7 @@ def board_facts(board: Storyboard) -> dict[str, str]:
                 [p.character, "at", p.at.written or "somewhere"]
                 + (["facing", p.facing.written] if p.facing else [])
                 + ([p.posture] if p.posture != "standing" else [])
+                + (["holding", p.holding.written] if p.holding else [])
             )
             for p in scene.placements
         ]

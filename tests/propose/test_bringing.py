@@ -166,7 +166,7 @@ def test_states_are_kept_where_a_line_before_brings_something_more(tmp_path: Pat
     for one of now."""
 
     def last(lines: str) -> StoryProposal:
-        cache = Cache(tmp_path)
+        cache = Cache(tmp_path, 1 << 28)
         checked = check_source(Source("x.vds", HEAD.format(anna="fountain") + lines), Report())
         acts = Acts(checked, cache, "code")
         acts.play()

@@ -179,4 +179,4 @@ def test_documented_fields_are_the_fields(folder: Path) -> None:
     space = json.loads(vdsc("why", folder / "story.vds", "1", "--space", "--json").stdout)
     assert documented_fields("vds.space/1") == fields(space)
     told = explained(folder / "story.vds", "1", "-b", folder / "out")
-    assert documented_fields("vds.why/1") - {"advice.why", "advice.instead"} == fields(told)
+    assert documented_fields("vds.why/1") - {"advice.why", "advice.instead", "advice.faulty"} == fields(told)

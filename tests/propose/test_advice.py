@@ -8,11 +8,14 @@ import numpy as np
 import pytest
 from filmset import shot, skeleton, standing, still_story, story, thing, world
 
+from runtime.motion.types import ActorState
 from vdsl.lang.ir import ALL_ANGLES, SIZES, Shot
-from vdsl.propose.advice import advise
+from vdsl.propose.advice import advise, is_faultless
 from vdsl.propose.cameras import Filming, propose_cameras, subject_of
 from vdsl.propose.drawing import draw, generator, nudged
 from vdsl.propose.shooting import shoot
+from vdsl.propose.state import SceneState
+from vdsl.propose.story import Told, film
 from vdsl.propose.types import Advice
 
 BODY = skeleton()
@@ -147,3 +150,30 @@ def test_what_the_usual_cameras_have_no_room_for_is_nudged() -> None:
     assert good > 0
     off = [(float(c.params["azimuth"]) + np.pi / 8) % (np.pi / 4) - np.pi / 8 for c in grid.cameras]
     assert np.degrees(np.abs(off)).max() > 9.5  # farther off than usual cameras ever stand
+
+
+def fenced(height: float) -> Filming:
+    """Somebody within a ring of fences."""
+    turns = np.arange(16) * np.pi / 8
+    boxes = tuple((1.2 * np.cos(a), 1.2 * np.sin(a), height / 2, 0.05, 0.3, height / 2, a) for a in turns)
+    return Filming(world(boxes=boxes), {"anna": BODY}, 24.0, 0)
+
+
+def test_where_every_take_has_a_fault_it_is_told_and_what_has_takes_without_one() -> None:
+    asked = replace(shot("static", "full", lens=(40.0, 80.0)), proposals=40)
+    told = {}
+    for height in (0.3, 0.7):
+        filming = fenced(height)
+        state = SceneState(filming.world, {"anna": ActorState((0.0, 0.0, 0.0), 0.0)}, {})
+        acted = Told((still_story(BODY),), state)
+        told[height] = film(acted, asked, state, filming, advised=True).advice
+        assert film(acted, asked, state, filming).advice is None
+    assert told[0.3] is None
+    advice = told[0.7]
+    assert advice is not None
+    assert advice.faulty
+    assert advice.why == "something hides anna"
+    assert "medium-long" in advice.instead
+    for words in advice.instead:
+        grid = propose_cameras(with_words(asked, words), [still_story(BODY)], fenced(0.7))
+        assert any(map(is_faultless, grid.cameras)), words

@@ -94,6 +94,32 @@ _COMPARED = {
     "logit": ("liked better by the ranker", "liked less by the ranker", "logit"),
 }
 
+#: Of every measure that may be a fault: what is wrong then.
+FAULTY = {
+    "visibility": "something hides {whom}",
+    "head_visible": "the head is hidden for part of it",
+    "ends_visible": "something hides {whom} at the first frame or the last",
+    "face": "{whom} is seen from behind",
+    "in_frame": "{whom} leaves the frame",
+    "view": "not everybody is seen whom the view is of",
+    "lead_room": "there is little room ahead of the face",
+    "clearance": "the camera has hardly any room",
+    "foreground": "something near is in the way",
+    "face_covered": "an arm is before the face",
+    "backdrop_gap": "a wall is missing behind",
+    "walk_missed": "much of the walk is missed",
+    "head_cut": "the head is cut",
+    "feet_cut": "the feet are cut",
+    "head_cropped": "a border runs through head or body at the start or the end",
+    "size_error": "the size is not quite the one asked for",
+    "empty": "there is nothing to see for a while",
+    "company_cut": "somebody else is seen without their head",
+    "headroom_error": "there is too much or too little air over the head",
+    "thirds_error": "the eyes are far off the upper third",
+    "jerk": "the camera jerks",
+    "speed": "the camera goes too fast",
+}
+
 
 def is_good(name: str, value: float) -> bool:
     """Whether a measure is within what its note calls good."""

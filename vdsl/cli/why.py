@@ -149,7 +149,9 @@ def _lines(document: dict[str, Any], take: int | None) -> Iterable[str]:
     yield ""
     if document["advice"]:
         instead = listing(f"`{words}`" for words in document["advice"]["instead"])
-        yield f"no camera does quite what the line says: {document['advice']['why']}; try {instead}"
+        faulty = document["advice"].get("faulty")
+        said = "no take is without a fault" if faulty else "no camera does quite what the line says"
+        yield f"{said}: {document['advice']['why']}" + (f"; try {instead}" if instead else "")
     if document["rejected"]:
         reasons = (f"{n} {why.replace('_', ' ')}" for why, n in document["rejected"].items())
         yield f"rejected before judging: {', '.join(reasons)}"

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from ..lang.ir import Beat, Storyboard
+from ..propose.types import Advice
 from .documents import MEASURE_DECIMALS, numbers, rounded, write_document
 from .statistics import statistics
 from .timeline import Placed, film_timeline
@@ -89,7 +90,7 @@ def _shot(built: BuiltShot, place: Placed | None) -> dict[str, Any]:
         "wanted": shot.proposals,
         "proposals": built.proposals,
         "rejected": dict(sorted(built.rejected.items())),
-        "advice": {"why": built.advice.why, "instead": list(built.advice.instead)} if built.advice else None,
+        "advice": _advice(built.advice),
         "depends": built.depends,
         "takes": [_take(shot.id, t) for t in built.takes],
     }
@@ -117,6 +118,12 @@ def _cut(cut: CutFinding) -> dict[str, Any]:
         "numbers": numbers(found.numbers),
         "text": cut.text,
     }
+
+
+def _advice(advice: Advice | None) -> dict[str, Any] | None:
+    if advice is None:
+        return None
+    return {"why": advice.why, "instead": list(advice.instead), "faulty": advice.faulty}
 
 
 def _beat(beat: Beat) -> dict[str, Any]:

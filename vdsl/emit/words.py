@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 def beat_words(beat: Beat) -> str:
     """``anna give cup to ben``; without a target that goes without saying."""
     words = [beat.character, beat.action]
-    if beat.target is not None and beat.target.span != beat.span:
+    if beat.target is not None and not beat.target.implied:
         words.append(beat.target.written)
     if beat.second is not None:
         words += ["to", beat.second.written]

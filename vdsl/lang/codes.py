@@ -685,6 +685,12 @@ CODES: dict[str, Code] = {
         "Cameras have room, but none keeps to all the words of its line and sees its subject well. The least bad ones "
         "are offered. What the help names has been tried: there is a good camera for each.",
     ),
+    "VDS193": Code(
+        "no take without a fault",
+        "Cameras do what the line says, but film grammar finds a fault in every one of them; those with the least of it "
+        "come first. The message says what most of them have; what the help names has been tried: there is a camera "
+        "without a fault for each.",
+    ),
     # -- cutting shots together (VDS280-289) ---------------------------------------------------
     "VDS280": Code(
         "a cut crosses the line",

@@ -61,12 +61,14 @@ class Target:
     kind: ``object`` (path of an object, from the set's root), ``spot`` (an object's or room's path and,
         as last part, one of its spots), ``room``, ``character`` (path is the character's name alone) or,
         for the place of someone nobody placed, ``free`` (path is (): the first free spot of the scene)
+    implied: whether it goes without saying, and is not written
     """
 
     kind: str
     path: tuple[str, ...]
     written: str
     span: Span = field(compare=False, repr=False)
+    implied: bool = field(default=False, compare=False, repr=False)
 
 
 @dataclass(frozen=True)

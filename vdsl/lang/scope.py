@@ -80,7 +80,7 @@ class Scope:
         span: what it is said by
         """
         found = self.look_up((word,))
-        return Target(found[0].kind, found[0].path, word, span) if found else None
+        return Target(found[0].kind, found[0].path, word, span, implied=True) if found else None
 
     def look_up(self, parts: tuple[str, ...]) -> list[Found]:
         """Everything the parts of a name may mean; one where it is plain, none where it is unknown."""

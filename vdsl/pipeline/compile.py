@@ -420,10 +420,13 @@ def _warn_of_poor_shots(shots: tuple[BuiltShot, ...], report: Report) -> None:
         reasons = ", ".join(f"{n} {why.replace('_', ' ')}" for why, n in built.rejected.items())
         why = built.advice.why if built.advice else ""
         instead = built.advice.instead if built.advice else ()
+        faulty = built.advice is not None and built.advice.faulty
+        counted = f"rejected: {reasons}" if reasons and not faulty else ""
+        label = "; ".join(part for part in (why, counted) if part)
         report.warn(
-            "VDS192" if built.takes else "VDS190",
+            "VDS193" if faulty else "VDS192" if built.takes else "VDS190",
             built.shot.span,
-            label="; ".join(part for part in (why, f"rejected: {reasons}" if reasons else "") if part),
+            label=f"no take is without a fault; in most {label}" if faulty else label,
             help=f"try {listing(f'`{words}`' for words in instead)}"
             if instead
             else "no other size, angle or lens helps here: try another place, or another focus",

@@ -1,7 +1,7 @@
 """Why no camera does what a line says, and what would work instead: computed from the place, not canned.
 
-Assumes a shot none of whose candidates survived. Guarantees that every alternative named has survivors
-among a few candidates of its own.
+Assumes a shot none of whose candidates survived, or none without a fault. Guarantees that every alternative
+named has survivors, or some without a fault, among a few candidates of its own.
 """
 
 from __future__ import annotations
@@ -9,23 +9,27 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
 from runtime.world import WorldObject
 
+from ..cinema.flaws import flaws_by_measure, gravity
 from ..cinema.sight import blockers
 from ..cinema.space import nearby, stage_of
 from ..cinema.subject import SIGHT, Subject
 from ..cinema.takes import samples
+from ..cinema.telling import FAULTY
 from ..lang.ir import ALL_ANGLES, ANGLES, SCALES, SIZES, Shot
 from .cameras import Filming, Tried, subject_of, try_cameras
 from .drawing import draw, generator
 from .rejection import REASONS
-from .types import Advice, StoryProposal
+from .types import Advice, CameraProposal, StoryProposal
 
 _STEPS = 5  # sizes nearer or farther that still are the same shot, more or less
 _TRIED = 48  # candidates of an alternative
+_TRIED_FOR_FAULTS = 96  # the same, where they are to be without a fault
 _WAYS = 3  # in which a line is played that are looked at
 _LENSES = (50.0, 35.0, 24.0, 18.0)
 _LONGER = (85.0, 100.0, 135.0, 200.0)
@@ -41,8 +45,25 @@ def advise(
     """
     failed = _Failed(shot, story, subject_of(shot, story, filming), filming, _try(shot, story, filming, 192))
     ways = (story, *others[: _WAYS - 1])
-    instead = tuple(_instead(shot, ways, filming))
+    instead = tuple(_instead(shot, partial(_works, ways=ways, filming=filming), filming))
     return Advice(_why(failed), instead or tuple(_together(shot, ways, filming)))
+
+
+def is_faultless(camera: CameraProposal) -> bool:
+    """Whether film grammar finds no fault in a camera."""
+    return not any(bool(found) for found in flaws_by_measure(camera.measures).values())
+
+
+def advise_on_faults(
+    shot: Shot, story: StoryProposal, filming: Filming, cameras: Sequence[CameraProposal]
+) -> Advice:
+    """Of a shot of which no take is without a fault: the commonest one, and words with which some are."""
+    names = {name for camera in cameras for name in camera.measures}
+    values = {name: np.array([camera.measures[name] for camera in cameras]) for name in names}
+    common = max(flaws_by_measure(values).items(), key=lambda item: int(item[1].sum()))[0]
+    whom = subject_of(shot, story, filming).name.replace("_", " ")
+    works = partial(_works, ways=(story,), filming=filming, faultless=True)
+    return Advice(FAULTY[common].format(whom=whom), tuple(_instead(shot, works, filming)), faulty=True)
 
 
 def _try(shot: Shot, story: StoryProposal, filming: Filming, count: int = _TRIED) -> Tried:
@@ -55,8 +76,17 @@ def _try(shot: Shot, story: StoryProposal, filming: Filming, count: int = _TRIED
 # --- what would work --------------------------------------------------------------------------
 
 
-def _works(shot: Shot, ways: Sequence[StoryProposal], filming: Filming) -> bool:
-    return any(bool((_try(shot, way, filming).reason < 0).any()) for way in ways)
+def _works(shot: Shot, ways: Sequence[StoryProposal], filming: Filming, faultless: bool = False) -> bool:
+    """Whether a few candidates have survivors; faultless: such as have no fault either."""
+    if not faultless:
+        return any(bool((_try(shot, way, filming).reason < 0).any()) for way in ways)
+    for way in ways:
+        tried = _try(shot, way, filming, _TRIED_FOR_FAULTS)
+        if tried.measured is not None:
+            grave = np.sum(list(gravity(tried.measured.values).values()), axis=0)
+            if bool(((tried.reason[tried.kept] < 0) & (grave == 0)).any()):
+                return True
+    return False
 
 
 def _together(shot: Shot, ways: Sequence[StoryProposal], filming: Filming) -> Iterator[str]:
@@ -71,8 +101,8 @@ def _together(shot: Shot, ways: Sequence[StoryProposal], filming: Filming) -> It
             return
 
 
-def _instead(shot: Shot, ways: Sequence[StoryProposal], filming: Filming) -> Iterator[str]:
-    """Words that have survivors where they stand in the line instead; of each kind the nearest first."""
+def _instead(shot: Shot, works: Callable[[Shot], bool], filming: Filming) -> Iterator[str]:
+    """Words that work where they stand in the line instead; of each kind the nearest first."""
     paper = filming.rig == "paper"
     known, angles = (SCALES, ANGLES) if paper else (SIZES, ALL_ANGLES)
     asked = [SIZES.index(s) for s in shot.scales]
@@ -88,7 +118,7 @@ def _instead(shot: Shot, ways: Sequence[StoryProposal], filming: Filming) -> Ite
         (1, [("static", replace(shot, movements=("static",)))] if "static" not in shot.movements else []),
     )
     for most, options in kinds:
-        worked = (words for words, other in options if _works(other, ways, filming))
+        worked = (words for words, other in options if works(other))
         yield from (words for _, words in zip(range(most), worked, strict=False))
 
 

@@ -25,7 +25,7 @@ from ..lang.diagnostics import Report
 from ..lang.ir import Shot, StoryLine
 from ..library import Catalog
 from ..stage.actions import build_clip
-from .advice import advise
+from .advice import advise, advise_on_faults, is_faultless
 from .arriving import arrival, shows_arrival
 from .beholding import beholding
 from .bringing import with_things_at_hand
@@ -123,7 +123,8 @@ def propose(
 ) -> ProposalGrid:
     """S · C proposals of one shot: the line performed, and cameras on it.
 
-    advised: where no camera does what the line says, find out why, and what would work
+    advised: where no camera does what the line says, or none without a fault, find out why, and what would
+        work
     """
     return film(tell(state, line, filming, shot=shot), shot, state, filming, advised)
 
@@ -134,6 +135,8 @@ def film(told: Told, shot: Shot, state: SceneState, filming: Filming, advised: b
     grid = propose_cameras(shot, told.proposals, filming)
     if advised and told.proposals and grid.let_in == len(grid.cameras):
         return replace(grid, advice=advise(shot, told.proposals[0], filming, told.proposals[1:]))
+    if advised and filming.rig == "cinema" and grid.cameras and not any(map(is_faultless, grid.cameras)):
+        return replace(grid, advice=advise_on_faults(shot, told.proposals[0], filming, grid.cameras))
     return grid
 
 

@@ -75,10 +75,14 @@ class CameraProposal:
 
 @dataclass(frozen=True, eq=False)
 class Advice:
-    """Why a shot has no camera as its line says, in words, and words with which it would have some."""
+    """Why a shot has no camera as its line says, in words, and words with which it would have some.
+
+    faulty: there are some, but none without a fault
+    """
 
     why: str
     instead: tuple[str, ...]
+    faulty: bool = False
 
 
 @dataclass(frozen=True, eq=False)

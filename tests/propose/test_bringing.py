@@ -135,7 +135,7 @@ def _without(definition: ActionDef) -> ActionDef:
     words = definition.example.split()
     first, rest = words[:2], words[2:]
     if definition.needs == "second":
-        rest = rest[: rest.index("with")] if "with" in rest else rest
+        rest = rest[: rest.index("with")] if "with" in rest else rest[rest.index("to") + 1 :]
     else:
         rest = [w for w in rest if w not in definition.props]
         rest = rest[:-1] if rest[-1:] == ["with"] else rest

@@ -7,6 +7,7 @@ left are one or two targets, the second after a word like ``to`` or ``with``. A 
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 
 from runtime.motion.manner import MANNERS
@@ -17,6 +18,7 @@ from .definitions.types import DefinitionBase
 from .diagnostics import Report, listing, nearest
 from .ir import Beat, Target
 from .scope import Scope
+from .source import Span
 
 _MOST_ACTION_WORDS = 4
 _MOST_LISTED = 30
@@ -35,13 +37,14 @@ class BeatReader:
         self.characters = characters
         self.scope = scope
         self.report = report
+        self.bring: Callable[[str, Span, str], Target | None] | None = None
         self._who: str | None = None
         self._actions = {words.fold(word): name for word, name in catalog.synonyms("action").items()}
         self._actions |= {words.fold(name): name for name in catalog.names("action")}
 
     def read(self, node: ast.BeatNode) -> Beat | None:
         character = self._who = self._character(node)
-        node, manner = self._manner(node)
+        node, manner = self._manner(self._plain(node))
         if len(node.words) < 2:
             self.report.error(
                 "VDS070",
@@ -55,14 +58,13 @@ class BeatReader:
             return None
         definition = self.catalog.get("action", action)
         rest = node.words[1 + used :]
-        named = self._targets(rest)
+        named = None if definition is None else self._targets(rest, definition)
         link = next((w.text for w in rest[1:] if w.text in words.PREPOSITIONS), "")
         if definition is None or named is None or character is None:
             return None
-        otherwise: str = getattr(definition, "otherwise", "")
-        if not named and otherwise and self.scope is not None:
-            unsaid = self.scope.first(otherwise, node.span)
-            named = [] if unsaid is None else [unsaid]
+        if not named and self.scope is not None:
+            unsaid = (self.scope.first(word, node.span) for word in getattr(definition, "otherwise", ()))
+            named = [target for target in unsaid if target is not None][:1]
         only_second = _is_second(definition, named)
         if not only_second and not self._fits(node, action, definition, named):
             return None
@@ -85,6 +87,14 @@ class BeatReader:
             return word.text
         unknown_character(word, self.characters, self.report)
         return None
+
+    def _plain(self, node: ast.BeatNode) -> ast.BeatNode:
+        """The beat without articles, and without words for whose something is."""
+        said = tuple(
+            word for n, word in enumerate(node.words)
+            if not n or word.text not in words.ARTICLES or word.text in self.characters
+        )  # fmt: skip
+        return replace(node, words=said)
 
     def _manner(self, node: ast.BeatNode) -> tuple[ast.BeatNode, str]:
         """The beat without its word for the manner, and that word."""
@@ -143,8 +153,8 @@ class BeatReader:
     def _wants_target(self, action: str) -> bool:
         """Whether nothing can be done by it alone."""
         definition = self.catalog.get("action", action)
-        otherwise: str = getattr(definition, "otherwise", "")
-        return getattr(definition, "target", "optional") == "required" and not otherwise
+        required = getattr(definition, "target", "optional") == "required"
+        return required and not getattr(definition, "otherwise", ())
 
     def _actions_in_words(self) -> str:
         names = self.catalog.names("action")
@@ -154,28 +164,38 @@ class BeatReader:
 
     # -- to what ---------------------------------------------------------------------
 
-    def _targets(self, rest: tuple[ast.Name, ...]) -> list[Target] | None:
+    def _targets(self, rest: tuple[ast.Name, ...], definition: DefinitionBase) -> list[Target] | None:
         """The targets named; None where one was reported."""
         groups = self._split(rest)
         if groups is None:
             return None
+        if len(groups) == 1 and len(groups[0]) > 1 and self._is_given_to(groups[0][0], definition):
+            groups = [groups[0][1:], groups[0][:1]]  # `give ben the cup`
+        if getattr(definition, "anything", False):  # `write poem` is done at a desk
+            groups = [g for g in groups if not self._is_nowhere(g) or self._is_like_something(g)]
         if len(groups) > 2:
             self.report.error("VDS073", groups[2][0].span, label="an action has two targets at most")
             return None
-        found = [self.target(group) for group in groups]
+        needs, with_first = getattr(definition, "needs", "none"), rest[:1] != () and rest[0].text == "with"
+        held = {"target": 0, "any": 0, "second": 0 if with_first and len(groups) == 1 else 1}.get(needs)
+        found = [self.target(group, n == held) for n, group in enumerate(groups)]
         known = [target for target in found if target is not None]
         return known if len(known) == len(found) else None
 
+    def _is_given_to(self, word: ast.Name, definition: DefinitionBase) -> bool:
+        """Whether somebody named before a thing is whom it is given to, shown to, thrown to."""
+        second = getattr(definition, "second", "none")
+        also: tuple[str, ...] = tuple(getattr(definition, "second_kinds", ()))
+        return word.text in self.characters and second != "none" and (not also or "character" in also)
+
     def _split(self, rest: tuple[ast.Name, ...]) -> list[list[ast.Name]] | None:
-        """Groups of words that name one target each, without prepositions and articles."""
+        """Groups of words that name one target each, without prepositions."""
         groups: list[list[ast.Name]] = []
         fresh = True
         last: ast.Name | None = None
         for name in rest:
             if name.text in words.PREPOSITIONS:
                 fresh, last = True, name
-            elif name.text in words.ARTICLES and name.text not in self.characters:
-                continue
             elif fresh:
                 groups.append([name])
                 fresh, last = False, None
@@ -186,13 +206,21 @@ class BeatReader:
             return None
         return groups
 
-    def target(self, group: list[ast.Name]) -> Target | None:
-        """One target by its word, or by several words that are one name (``bus stop``)."""
+    def target(self, group: list[ast.Name], held: bool = False) -> Target | None:
+        """One target by its word, or by several words that are one name (``bus stop``).
+
+        held: it is to be in a hand, so that what the scene has not is brought, if it is a prop
+        """
         if len(group) > 1 and self.scope is not None:
             for joint in ("_", "-"):
                 parts = (joint.join(name.text for name in group),)
-                if len(self.scope.look_up(parts)) == 1:
+                if self.scope.look_up(parts):
                     return self._resolve(ast.Name(parts, group[0].span.to(group[-1].span)))
+        if held and self.bring is not None and self._who is not None and self._is_nowhere(group):
+            span = group[0].span.to(group[-1].span)
+            brought = self.bring("_".join(name.text for name in group), span, self._who)
+            if brought is not None:
+                return brought
         if len(group) > 1:
             names = " ".join(name.text for name in group)
             help = f"a second target follows a word like `to`: `{group[0].text} to {group[1].text}`"
@@ -200,11 +228,24 @@ class BeatReader:
             return None
         return self._resolve(group[0])
 
+    def _is_nowhere(self, group: list[ast.Name]) -> bool:
+        """Whether words name neither anybody nor anything in the scene."""
+        if self.scope is None or group[0].text in self.characters:
+            return False
+        parts = group[0].parts if len(group) == 1 else ("_".join(name.text for name in group),)
+        own = self.scope.carried_by(self._who, parts[-1]) if self._who and len(parts) == 1 else None
+        return own is None and not self.scope.look_up(parts)
+
+    def _is_like_something(self, group: list[ast.Name]) -> bool:
+        """Whether words are probably a name in the scene, or somebody's, not quite written as it is."""
+        known = (*self.characters, *(self.scope.known() if self.scope is not None else ()))
+        return any(nearest(name.text, known) is not None for name in group)
+
     def _resolve(self, name: ast.Name) -> Target | None:
         own = self.scope.carried_by(self._who, name.text) if self.scope and self._who else None
         if own is not None:
             return Target("object", own.path, name.text, name.span)
-        return resolve(name, self.characters, self.scope, self.report)
+        return resolve(name, self.characters, self.scope, self.report, any_of=True)
 
     def _fits(self, node: ast.BeatNode, action: str, definition: DefinitionBase, named: list[Target]) -> bool:
         """Whether the targets are what the action takes."""
@@ -259,9 +300,9 @@ class BeatReader:
 
 
 def resolve(
-    name: ast.Name, characters: tuple[str, ...], scope: Scope | None, report: Report
+    name: ast.Name, characters: tuple[str, ...], scope: Scope | None, report: Report, any_of: bool = False
 ) -> Target | None:
-    """A character or something in the scene."""
+    """A character or something in the scene; ``any_of``: of several of one kind the first will do."""
     if name.text in characters:
         return Target("character", (name.text,), name.text, name.span)
     if scope is None:
@@ -270,7 +311,7 @@ def resolve(
     if near is not None and not scope.look_up(name.parts):
         unknown_character(name, characters, report)
         return None
-    return scope.find(name, report)
+    return scope.find(name, report, any_of)
 
 
 def unknown_character(word: ast.Name, characters: tuple[str, ...], report: Report) -> None:

@@ -17,6 +17,7 @@ from .evaluate import evaluate_arguments
 from .ir import Beat, Carried, Target
 from .scope import Scope
 from .source import Span
+from .words import fold
 
 if TYPE_CHECKING:
     from .placement import SceneBeingRead
@@ -110,6 +111,28 @@ def bring(beat: Beat, scene: SceneBeingRead, catalog: CatalogLike) -> Beat:
             return beat
         return replace(beat, brought=_carry(Carried(beat.character, brings, brings), scene, beat.span))
     return replace(beat, brought=Target("object", path, brings, beat.span))
+
+
+def bring_named(
+    word: str, span: Span, who: str, scene: SceneBeingRead, catalog: CatalogLike
+) -> Target | None:
+    """What somebody has with them, by the name of its prop or another word for that.
+
+    None where nothing that can be carried is called so.
+    """
+    called = carried_called(word, catalog)
+    if scene.scope is None or not called:
+        return None
+    path = (who, word)
+    if path not in scene.carried:
+        _carry(Carried(who, word, called), scene, span)
+    return Target("object", path, word, span)
+
+
+def carried_called(word: str, catalog: CatalogLike) -> str:
+    """The prop that can be carried which a word is a name of; "" for none."""
+    called = word if word in catalog.names("prop") else catalog.synonyms("prop").get(fold(word), "")
+    return called if called and getattr(catalog.get("prop", called), "movable", False) else ""
 
 
 def check_brings(definition: DefinitionBase, at: Span, catalog: CatalogLike, report: Report) -> None:

@@ -11,7 +11,7 @@ from pathlib import PurePath
 
 from . import ast
 from .beats import BeatReader, unknown_character
-from .bringing import bring
+from .bringing import bring, bring_named
 from .catalog import CatalogLike
 from .diagnostics import Report
 from .files import used_scripts
@@ -299,6 +299,7 @@ class _Checker:
         names = tuple(self.characters)
         if stage.reader is None or stage.reader.characters != names:
             stage.reader = BeatReader(self.catalog, names, stage.scope, self.report)
+            stage.reader.bring = lambda word, span, who: bring_named(word, span, who, stage, self.catalog)
         beats = [self._beat(stage.reader, each, stage) for each in node.beats]
         done = tuple(beat for beat in beats if beat is not None)
         self._together(done)

@@ -29,7 +29,13 @@ class Hands:
         held = self._held.setdefault(beat.character, [])
         if beat.brought is not None and beat.brought.path not in held:
             held.append(beat.brought.path)
-        self._need(beat, getattr(definition, "needs", "none"))
+        needs: str = getattr(definition, "needs", "none")
+        self._need(beat, needs)
+        taken: Target | None = getattr(beat, needs, None) if needs in ("target", "second") else None
+        if taken is not None and taken.kind == "object" and taken.path not in held:
+            for other in self._held.values():
+                _drop(other, taken.path)
+            held.append(taken.path)
         moves = _moves(definition)
         if "take" in moves and beat.target is not None and beat.target.kind == "object":
             for other in self._held.values():
@@ -63,15 +69,14 @@ class Hands:
     def _need(self, beat: Beat, needs: str) -> None:
         wanted: Target | None = {"target": beat.target, "second": beat.second}.get(needs)
         held = self._held.get(beat.character, [])
-        if needs == "none" or (wanted.path in held if wanted is not None else held):
-            return
-        what = f"`{wanted.written}`" if wanted is not None else "anything"
-        name = wanted.written if wanted is not None else "NAME"
+        if needs == "none" or held or (wanted is not None and wanted.kind == "object"):
+            return  # what is named, and in no hand yet, is taken up first
+        what = "anything"
         self._report.warn(
             "VDS080",
             beat.span,
             label=f"{beat.character} does not hold {what} here",
-            help=f"a line like `({beat.character} pick up {name})` before this puts it in a hand",
+            help=f"a line like `({beat.character} pick up NAME)` before this puts it in a hand",
         )
 
 

@@ -56,10 +56,24 @@ class Scope:
         node = self._carried.get((who, name))
         return None if node is None else Found((who, name), node, False)
 
-    def find(self, name: Name, report: Report) -> Target | None:
-        """The target a name stands for; None where it was reported to be unknown or ambiguous."""
+    def find(self, name: Name, report: Report, any_of: bool = False) -> Target | None:
+        """The target a name stands for; None where it was reported to be unknown or ambiguous.
+
+        any_of: of several of the same kind, all in the scene, the first one is taken, with a warning
+        """
         found = self.look_up(name.parts)
         if len(found) == 1:
+            return Target(found[0].kind, found[0].path, name.text, name.span)
+        alike = {(f.node.prop, f.spot) if f.node.prop else f.path for f in found}
+        here = all(f.path[: len(self.room)] == self.room for f in found)
+        if any_of and found and here and len(alike) == 1:
+            paths = [self._shortest(f) for f in found]
+            report.warn(
+                "VDS061",
+                name.span,
+                label=f"`{name.text}` could be any of {len(found)}: `{paths[0]}` is taken",
+                help=f"say which: {listing(paths)}",
+            )
             return Target(found[0].kind, found[0].path, name.text, name.span)
         if found:
             paths = [".".join((self.root.name, *f.path)) for f in found]
@@ -198,6 +212,10 @@ class Scope:
         spots = [e.values[0] for e in body if e.head.text == "spot" and e.values]
         names = [*node.spots, *(s.text for s in spots if isinstance(s, Name))]
         return sum(1 for _ in self.sitting(target, placed)) < sum(n.startswith("seat") for n in names)
+
+    def known(self) -> tuple[str, ...]:
+        """All names of the set and of what people have with them."""
+        return (*_names(self.root), *(path[-1] for path in self._carried))
 
     def seats(self) -> tuple[str, ...]:
         """Names of what one can sit on, in the scene."""

@@ -181,8 +181,12 @@ SPEEDS: dict[str, float] = {"slow": 0.7, "calm": 0.85, "normal": 1.0, "brisk": 1
 TIMES = ("dawn", "day", "dusk", "night")
 STYLES = ("board", "clay", "ink")
 RIGS = ("cinema", "paper")
-PREPOSITIONS = ("to", "at", "with", "from", "in", "into", "on", "onto")
-ARTICLES = ("the", "a", "an")
+PREPOSITIONS = (
+    "to", "at", "with", "from", "in", "into", "on", "onto", "of", "out", "off", "through", "toward",
+    "towards", "for", "about", "against", "beside", "near", "by", "up", "down",
+)  # fmt: skip
+#: Words before a name that say nothing here: articles, and whose it is.
+ARTICLES = ("the", "a", "an", "some", "her", "his", "their", "its", "my", "your", "our")
 
 
 def plain_forms(verb: str) -> tuple[str, ...]:

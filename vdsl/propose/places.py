@@ -62,6 +62,12 @@ def object_target(item: WorldObject) -> Target:
     return Target("object", item.path, item.path[-1], Span(Source("<set>", ""), 0, 0))
 
 
+def spot_target(spot: Spot, world: World) -> Target:
+    """A spot of something as a target nobody wrote."""
+    owner = next(item for item in world.objects if spot in item.spots)
+    return Target("spot", (*owner.path, spot.name), spot.name, Span(Source("<set>", ""), 0, 0))
+
+
 def _middle(item: WorldObject) -> Point:
     spot = item.spot("middle")
     x, y, _ = spot.position if spot is not None else item.centre

@@ -73,8 +73,9 @@ class ActionDef(DefinitionBase):
     example: a line that shows it, as in the language, anna acting and ben the other; props: names of the
         props it needs
     goes: whether the way of travelling is written, so that one goes to the target whatever is done there
-    also: other words for it; otherwise: what it is done to where that is required and not said, if the scene
-    has such a thing, "" for nothing
+    also: other words for it; otherwise: what it is done to where that is not said, the first
+        of these that the scene has
+    anything: a name that the scene has not is taken for what it is done with there: `cook dinner`
     brings: the prop that whoever does it has about them and takes out where the line names nothing to do it
         with, "" for none; unless_held: not where anything is in a hand already
     """
@@ -101,7 +102,8 @@ class ActionDef(DefinitionBase):
     needs_hand: str = ""
     goes: bool = False
     also: tuple[str, ...] = ()
-    otherwise: str = ""
+    otherwise: tuple[str, ...] = ()
+    anything: bool = False
     brings: str = ""
     unless_held: bool = False
     brings_at: Span | None = field(default=None, compare=False, repr=False)
@@ -177,7 +179,8 @@ def _settings(
         needs_hand=settings["needs"].word("in", "", ("left", "right")) if "needs" in settings else "",
         goes="travel" in settings and travel != "none",
         also=tuple(word for word in others if word),
-        otherwise=settings["target"].word("otherwise", "") if "target" in settings else "",
+        otherwise=settings["target"].words("otherwise") if "target" in settings else (),
+        anything=settings["target"].flag("anything") if "target" in settings else False,
         brings=settings["brings"].value_word(0, "") if "brings" in settings else "",
         brings_at=next((value.span for value in settings["brings"].entry.values), None)
         if "brings" in settings

@@ -19,7 +19,7 @@ from .reader import Reader, unknown_entry
 from .types import DefinitionBase, ModelFile
 
 MOVING = ("hinge", "slide")
-ENTRIES = (*PRIMITIVES, "spot", "grip", "solid", *MOVING, "repeat")
+ENTRIES = (*PRIMITIVES, "spot", "grip", "solid", *MOVING, "repeat", "also")
 PART_ENTRIES = (*PRIMITIVES, "spot", "solid", "repeat")
 MAX_REPEAT = 200
 
@@ -163,6 +163,10 @@ def _shape(
             spots.append(read_spot(reader, 3))
         elif head == "grip":
             grip = reader.value_point(0, None, 3)
+            reader.done()
+        elif head == "also":  # other words for it, which the catalogue finds
+            for index in range(reader.count):
+                reader.value_word(index, "")
             reader.done()
         elif head in MOVING:
             part = _part(reader, [p.name for p in parts], strict)

@@ -1,0 +1,96 @@
+"""Story lines as people write them: whose something is, to whom it is given, and what goes without saying."""
+
+from __future__ import annotations
+
+import pytest
+
+from vdsl.lang import Report, Source, check, parse
+from vdsl.lang.ir import Beat, Storyboard
+from vdsl.library import Catalog
+
+HEAD = "character anna = woman\ncharacter ben = man\nscene s = {set} at day\n"
+
+
+def read(line: str, place: str = "apartment") -> tuple[Storyboard | None, Report]:
+    script, report = parse(Source("x.vds", HEAD.format(set=place) + f"anna at door\nben at door\n{line}\n"))
+    return check(script, Catalog.for_script(script, report), report), report
+
+
+def beat(line: str, place: str = "apartment") -> Beat:
+    board, report = read(line, place)
+    assert board is not None, [d.label for d in report.errors]
+    return board.lines[0].beats[0]
+
+
+def told(found: Beat) -> tuple[str, str, str, str]:
+    """Action, target, second target, and what is brought."""
+    named = (t.path[-1] if t is not None else "" for t in (found.target, found.second, found.brought))
+    target, second, brought = named
+    return found.action, target, second, brought
+
+
+@pytest.mark.parametrize(
+    ("line", "expected"),
+    [
+        ("(anna plays the guitar)", ("play-guitar", "", "", "guitar")),
+        ("(anna brushes her teeth)", ("brush-teeth", "", "", "toothbrush")),
+        ("(anna checks her watch)", ("check-watch", "", "", "")),
+        ("(anna takes out her phone)", ("show", "phone", "", "")),
+        ("(ben lights a cigarette)", ("smoke", "", "", "cigarette")),
+        ("(ben points a gun at anna)", ("aim", "anna", "", "gun")),
+        ("(ben takes a photo of anna)", ("photograph", "anna", "", "camera")),
+        ("(anna calls ben)", ("call", "", "ben", "phone")),
+        ("(ben drinks coffee)", ("drink", "coffee", "", "")),
+        ("(anna throws the ball to ben)", ("throw", "ball", "ben", "")),
+        ("(anna gives ben the cup)", ("give", "cup", "ben", "")),
+        ("(anna shows ben some flowers)", ("show", "flowers", "ben", "")),
+        ("(anna sits down)", ("sit", "", "", "")),
+        ("(ben cooks)", ("cook", "stove", "", "pan")),
+        ("(ben cooks dinner)", ("cook", "stove", "", "pan")),
+        ("(anna writes a poem)", ("write", "desk", "", "pen")),
+        ("(ben slams the door)", ("close", "door", "", "")),
+        ("(anna looks through sink_window)", ("look", "sink_window", "", "")),
+    ],
+)
+def test_lines_are_read_as_they_are_said(line: str, expected: tuple[str, str, str, str]) -> None:
+    assert told(beat(line)) == expected
+
+
+def test_what_a_word_stands_for_is_brought_as_that() -> None:
+    board, _ = read("(ben drinks coffee)")
+    assert board is not None
+    assert [(thing.name, thing.prop) for thing in board.scenes[0].carried] == [("coffee", "cup")]
+
+
+def test_what_the_scene_has_is_not_brought() -> None:
+    board, _ = read("(ben drinks from the cup)")
+    assert board is not None
+    assert board.scenes[0].carried == ()
+
+
+@pytest.mark.parametrize(
+    ("line", "code", "place"),
+    [
+        ("(anna opens the umbrella)", "VDS060", "umbrella"),  # nothing to be opened is brought
+        ("(anna picks up the violin)", "VDS060", "violin"),  # nor picked up
+        ("(anna gives ben the cupp)", "VDS060", "cupp"),
+        ("(ben cooks stoev)", "VDS060", "stoev"),  # so like a name that it is one
+        ("(anna throws the sofa2 to ben)", "VDS060", "sofa2"),
+    ],
+)
+def test_what_is_wrong_is_told_all_the_same(line: str, code: str, place: str) -> None:
+    _, report = read(line)
+    assert [(d.code, d.span.text) for d in report.errors] == [(code, place)]
+
+
+def test_of_several_alike_in_the_scene_the_first_is_taken_with_a_warning() -> None:
+    board, report = read("(anna waters the plant)")
+    assert board is not None
+    warning = next(d for d in report.diagnostics if d.code == "VDS061")
+    assert (warning.severity, warning.label) == (
+        "warning",
+        "`plant` could be any of 2: `living.plant` is taken",
+    )
+    assert board.lines[0].beats[0].target is not None
+    _, report = read("(anna walks to lamp)", "apartment.kitchen")  # those are in other rooms
+    assert [d.code for d in report.errors] == ["VDS061"]

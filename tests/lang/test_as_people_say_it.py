@@ -92,5 +92,5 @@ def test_of_several_alike_in_the_scene_the_first_is_taken_with_a_warning() -> No
         "`plant` could be any of 2: `living.plant` is taken",
     )
     assert board.lines[0].beats[0].target is not None
-    _, report = read("(anna walks to lamp)", "apartment.kitchen")  # those are in other rooms
+    _, report = read("(anna walks to book)", "apartment.kitchen")  # those are in other rooms
     assert [d.code for d in report.errors] == ["VDS061"]

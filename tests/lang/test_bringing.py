@@ -34,6 +34,14 @@ def test_a_thing_of_the_scene_is_held_before_a_prop_of_that_name() -> None:
     assert board.scenes[0].carried == (Carried("ben", "cup", "cup", held=True),)
 
 
+def test_of_two_in_the_scene_neither_is_meant_by_who_holds_one() -> None:
+    board = fine("anna at door holding book\nben at counter holding coffee\n(anna wave)\n")
+    assert board.scenes[0].carried == (
+        Carried("anna", "book", "book", held=True),
+        Carried("ben", "coffee", "cup", held=True),
+    )
+
+
 def test_what_is_held_may_be_said_in_numbers() -> None:
     board = fine('anna at door facing window holding bag(color "#223344", width 30cm)\n(anna wave)\n')
     (bag,) = board.scenes[0].carried

@@ -26,7 +26,8 @@ if TYPE_CHECKING:
 def held_at_first(
     written: ast.Name | ast.Call, who: str, scene: SceneBeingRead, report: Report
 ) -> Target | None:
-    """``holding bag``, ``holding bag(color navy)``: a thing of the scene that nobody holds yet, else a prop.
+    """``holding bag``, ``holding bag(color navy)``: the thing of the scene that is called so alone, if nobody
+    holds it yet; else a prop.
 
     None where it was reported that there is no such thing, or that it is none to hold.
     """
@@ -34,7 +35,9 @@ def held_at_first(
     if scene.scope is None:
         return None
     there = scene.scope.look_up(name.parts) if isinstance(written, ast.Name) else []
-    if there and not (len(there) == 1 and scene.hands.holder(there[0].path)):
+    called = carried_called(name.text, scene.scope.catalog)
+    free = len(there) == 1 and scene.hands.holder(there[0].path) is None
+    if there and (free or not called):
         target = scene.scope.find(name, report)
         if target is None:
             return None
@@ -45,7 +48,7 @@ def held_at_first(
             return None
         scene.hands.give(who, target.path)
         return target
-    prop = scene.scope.prop(name.text)
+    prop = scene.scope.prop(called or name.text)
     if prop is None:
         known = scene.scope.props()
         if name.text not in known:
@@ -65,7 +68,7 @@ def held_at_first(
     arguments: dict[str, float | str] = {}
     if isinstance(written, ast.Call):
         arguments = evaluate_arguments(written.arguments, prop.parameters, {}, report, prop.name)
-    thing = Carried(who, name.text, name.text, tuple(arguments.items()), held=True)
+    thing = Carried(who, name.text, called, tuple(arguments.items()), held=True)
     return _carry(thing, scene, name.span)
 
 

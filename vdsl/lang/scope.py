@@ -41,7 +41,7 @@ class Scope:
     def __init__(self, root: SetNode, room: tuple[str, ...], catalog: CatalogLike) -> None:
         self.root = root
         self.room = room
-        self._catalog = catalog
+        self.catalog = catalog
         self._cache: dict[tuple[str, ...], list[Found]] = {}
         self._carried: dict[tuple[str, ...], SetNode] = {}
 
@@ -167,12 +167,12 @@ class Scope:
         """Spots and moving parts that come with the prop placed at a node."""
         if node.prop is None:
             return ()
-        prop = self._catalog.get("prop", node.prop)
+        prop = self.catalog.get("prop", node.prop)
         return (*getattr(prop, "spots", ()), *getattr(prop, "parts", ()))
 
     def prop(self, name: str) -> DefinitionBase | None:
         """The definition of a prop; None where there is none."""
-        return self._catalog.get("prop", name)
+        return self.catalog.get("prop", name)
 
     def prop_of(self, node: SetNode) -> DefinitionBase | None:
         """The definition of what stands at a node."""
@@ -180,7 +180,7 @@ class Scope:
 
     def props(self) -> tuple[str, ...]:
         """Names of all props there are."""
-        return self._catalog.names("prop")
+        return self.catalog.names("prop")
 
     def node_of(self, target: Target) -> SetNode | None:
         """The tree's node of a target (for a spot, the node it is on)."""
@@ -205,7 +205,7 @@ class Scope:
     def has_seat_left(self, target: Target, placed: Iterable[Placement]) -> bool:
         """Whether somebody more can sit there; True also where only the built set can tell."""
         node = self.node_of(target)
-        prop = self._catalog.get("prop", node.prop) if node and node.prop else None
+        prop = self.catalog.get("prop", node.prop) if node and node.prop else None
         body = getattr(prop, "body", ())
         if node is None or any(e.head.text == "spot" for each in body if each.body for e in each.body):
             return True

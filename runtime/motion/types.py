@@ -182,6 +182,7 @@ class ActionClip:
     needs_hand: ``left`` or ``right`` where what it needs has to be in that hand, "" for either
     capture: motion that the body goes through in the clip's own part
     goes: whether one gets to the target first even where the clip's own part needs nothing from it
+    roams: whether it is to go somewhere, even where no target says where to
     """
 
     name: str
@@ -201,6 +202,7 @@ class ActionClip:
     hold: bool = False
     capture: Capture | None = None
     goes: bool = False
+    roams: bool = False
 
     def variant(self, name: str) -> Variant:
         """The variant of that name, or the first."""

@@ -247,3 +247,16 @@ def test_who_acts_or_sits_stays_as_the_line_has_it() -> None:
     assert looks(play(AWAY + f"{both} ots ben)\n")) == pytest.approx(looks(play(AWAY + f"{both})\n")))
     sits = "anna at counter\nben at chair_2 sitting\n(anna wave) / (static medium eye-level"
     assert looks(play(sits + " ots ben)\n")) == pytest.approx(looks(play(sits + ")\n")))
+
+
+@pytest.mark.parametrize(
+    ("action", "goes"),
+    [("walk", True), ("run", True), ("crawl", True), ("wander", True), ("turn", False), ("talk", False)],
+)
+def test_who_is_to_go_and_nobody_says_where_to_goes_some_steps(action: str, goes: bool) -> None:
+    """Once it was a shot of nine frames in which nobody moved."""
+    played = play(f"(anna {action})\n")
+    for story in played.stories(0):
+        way = story.performances["anna"].position
+        assert (float(np.linalg.norm(way[-1] - way[0])) > 1.2) == goes
+        assert story.frames > 24

@@ -25,6 +25,8 @@ from .pouring import something_to_pour
 from .state import PERSON_RADIUS, SceneState
 
 _NEAR_ENOUGH = 1.25  # metres between people who can hand each other things or talk without moving
+#: Where one goes who has no place to go to: radians off ahead, and metres.
+_ROAM_TURNS, _ROAM_FAR = (0.0, 0.5, -0.5, 1.0, -1.0, 1.6, -1.6, 2.4, -2.4, 3.1), (4.5, 3.6, 2.8, 2.0, 1.4)
 _STANDS_THERE = 0.2  # metres from the place to stand within which nobody takes a step
 
 
@@ -108,6 +110,12 @@ def _errand(
         way = np.array([actor.position, free]) if free is not None else np.zeros((0, 3))
         return Errand(_task(clip, target, second, shot), (way,), None)
     where = _where_to(beat, clip, target, second, state)
+    if where is None and clip.roams and target is None and _is_on_the_way(clip):
+        roaming = _roaming(beat.character, state, taken)
+        if roaming is not None:
+            way_there, there = roaming
+            task = replace(_task(clip, None, second, shot), arrive_heading=there.heading)
+            return Errand(task, (way_there,), there)
     if where is None:
         turned = _turned_to(beat, clip, target, state)
         return Errand(replace(_task(clip, target, second, shot), arrive_heading=turned), (), None)
@@ -312,8 +320,7 @@ def _where_to(
     if clip.posture == "lying" and target is not None and target.bed is not None:
         there = actor.seat is not None and math.dist(actor.seat, target.bed[0]) < 0.3
         return None if there and actor.posture == "lying" else beat.target
-    goes = not any(v.duration > 0 and _plays(v.timeline) for v in clip.variants) or clip.lead or clip.goes
-    if goes and beat.target is not None:
+    if _is_on_the_way(clip) and beat.target is not None:
         carried = target is not None and target.object is not None and target.object in held
         return beat.second if carried else beat.target
     pairs = ((beat.second, second, "second"), (beat.target, target, "target"))
@@ -326,6 +333,33 @@ def _where_to(
         if _away(point, actor.position) > (_NEAR_ENOUGH if point.character else ARM):
             return written
     return None
+
+
+def _is_on_the_way(clip: ActionClip) -> bool:
+    """Whether it is to get somewhere that matters, rather than what is done there."""
+    return not any(v.duration > 0 and _plays(v.timeline) for v in clip.variants) or clip.lead or clip.goes
+
+
+def _roaming(who: str, state: SceneState, taken: Discs) -> tuple[NDArray[np.float64], Stop] | None:
+    """A way for who is to go, and nobody says where to: some steps on free floor, ahead if there is room."""
+    actor = state.actors[who]
+    people = state.people(but=who) + taken
+    x, y, z = actor.position
+    best: tuple[float, NDArray[np.float64], Stop] | None = None
+    for off in _ROAM_TURNS:
+        heading = actor.heading + off
+        for far in _ROAM_FAR:
+            there = (x + far * math.cos(heading), y + far * math.sin(heading), z)
+            spot = nearest_free(state.world, there, people, within=0.3)
+            found = ways_through(state.world, actor.position, spot, 1, people) if spot is not None else []
+            if spot is None or not found or found[0][1]:  # not through doors that are shut
+                continue
+            path = found[0][0]
+            length = float(np.linalg.norm(np.diff(path[:, :2], axis=0), axis=1).sum())
+            if length < 1.15 * far + 0.3 and (best is None or far - abs(off) > best[0]):
+                best = far - abs(off), path, Stop(spot[0], spot[1], heading, spot[2])
+            break
+    return None if best is None else best[1:]
 
 
 def _plays(timeline: Timeline) -> bool:

@@ -57,6 +57,10 @@ def build_clip(action: ActionDef) -> ActionClip:
         action.needs_hand,
         any(v.part.hold for v in action.variants),
         goes=action.goes,
+        roams=action.group == "going"
+        and action.travel != "none"
+        and action.sit == "keep"
+        and not action.turn,
     )
     return with_capture(clip, action) if isinstance(action, FileActionDef) else clip
 

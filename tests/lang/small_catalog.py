@@ -115,7 +115,7 @@ ACTIONS = {
     "sit": ("required", ("object",), "none"),
     "stand-up": ("none", (), "none"),
     "pick-up": ("required", ("object",), "none"),
-    "put-down": ("required", ("object",), "optional"),
+    "put-down": ("optional", ("object",), "optional"),
     "pour": ("required", ("object",), "optional"),
     "greet": ("required", ("character",), "none"),
     "give": ("required", ("object",), "required"),

@@ -319,6 +319,25 @@ def test_a_training_set_is_half_good_and_goes_on_where_it_stopped(
         generate(tmp_path / "a", at_once + 1, seed=5, device="cpu", size=64, processes=1)
 
 
+def test_where_few_stories_get_pictures_the_others_have_guides_alone(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("vdsl.pipeline.dataset.Troupe", partial(Troupe, lines=1, cameras=1))
+    film = partial(generate, tmp_path, seed=4, device="cpu", size=48, processes=1)
+    framed = film(1, pictures=0.01)
+    data = Dataset(tmp_path)
+    assert framed == sum(not label.bare for label in data.labels) > 0
+    assert {label.split for label in data.labels if not label.bare} == {"test"}
+    learnt = [label for label in data.labels if label.split == "train"]
+    assert {label.about["kind"] for label in learnt} >= {"designer", "passed-over"}
+    assert all(label.bare for label in learnt)
+    guides = data.guides(np.arange(len(data)))
+    assert guides is not None
+    assert data.made["pictures"] == 0.01
+    with pytest.raises(RankerError, match="another kind"):
+        film(framed + 1)
+
+
 @pytest.mark.slow
 def test_several_processes_make_the_set_that_one_makes(tmp_path: Path) -> None:
     for processes in (1, 2):

@@ -373,7 +373,8 @@ CODES: dict[str, Code] = {
     "VDS061": Code(
         "ambiguous name",
         "Several things in the set have this name, none of them nearer than the others. Say which, by as much of "
-        "its path as it takes.",
+        "its path as it takes. Where a story line means one of several that are alike and all in the scene, the first "
+        "is taken, and this is a warning.",
         "(anna walk lamp)",
         "(anna walk living.lamp)",
     ),
@@ -489,8 +490,8 @@ CODES: dict[str, Code] = {
         "empty hands",
         "The action is done with something that should be in a hand by now, and nobody picked it up. The line is "
         "played all the same, as well as that can be.",
-        "(ben drink)",
-        "(ben pick up cup)\n(ben drink)",
+        "(ben put down)",
+        "(ben pick up cup)\n(ben put down)",
     ),
     "VDS081": Code(
         "nothing to hold",

@@ -29,6 +29,7 @@ MOST = (
     ("visibility", "face_covered", 0.3, 1.0),
     ("visibility", "backdrop_gap", 0.03, 0.4),
     ("visibility", "walk_missed", 0.5, 1.0),
+    ("visibility", "act_missed", 0.5, 1.0),
     ("framing", "head_cut", 0.03, 0.4),
     ("framing", "feet_cut", 0.03, 0.4),
     ("framing", "head_cropped", 0.6, 1.0),

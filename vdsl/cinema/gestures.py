@@ -1,4 +1,5 @@
-"""Whether one sees what hands do, how clearly, and whether they and the arms are in the way of the face.
+"""Whether one sees what hands do, how clearly, and whether they, the arms or what they hold are in the way of
+the face.
 
 Assumes landmarks of a posed body. Hands that hang or swing beside it do nothing one has to see.
 """
@@ -25,6 +26,8 @@ _SKIN = 0.02
 #: Directions to the sides of where a face points, radians, and metres from it, from which one tells how
 #: little of it an action can cover.
 _AROUND, _AWAY = np.radians((-60.0, -30.0, 0.0, 30.0, 60.0)), 2.0
+#: Metres that hands at work go before one asks how much of that is seen.
+_AN_ACT = 0.4
 #: Sizes that show hands at work.
 _SHOW_HANDS = ("waist", "thigh", "knees", "feet")
 
@@ -48,6 +51,25 @@ def hands_missed(takes: Takes, subject: Subject, at: NDArray[np.int64], camera: 
     found = (seen[0] | seen[1]) & takes.window
     missed = 1.0 - found.sum(axis=1) / np.maximum(asked.sum(axis=1), 1)
     return np.where(_shows_hands(takes) & asked.any(axis=1), missed, 0.0)
+
+
+def act_missed(subject: Subject, at: NDArray[np.int64], seen: Bools) -> Array:
+    """Share [P] of the way a person's hands go at work, beside their body, on which nothing of that person is
+    seen: of a camera that turns to somebody, how much of what they do is over by then.
+
+    seen: bool [P, F, K], which of their points are in the frame and not hidden
+    0 for what is no person, and where hands hardly move
+    """
+    if subject.kind != "person":
+        return np.zeros(len(seen))
+    works, body = _at_work(subject, at), subject.landmarks["pocket"][at]
+    hands = np.stack([subject.landmarks[name][at] - body for name in ("hand_l", "hand_r")], axis=1)
+    steps = length(np.diff(hands, axis=0)) * (works[1:] | works[:-1])
+    steps = steps.max(axis=1, initial=0.0)
+    if steps.sum() < _AN_ACT:
+        return np.zeros(len(seen))
+    way = np.append(steps, 0.0) + np.append(0.0, steps)  # at every frame, there and back: twice
+    return np.asarray((~seen.any(axis=2) * way).sum(axis=1) / way.sum())
 
 
 def gesture_lost(
@@ -99,8 +121,9 @@ def _off(point: Array, begin: Array, end: Array) -> Array:
 
 
 def face_covered(takes: Takes, subject: Subject, at: NDArray[np.int64], camera: Array) -> Array:
-    """Share [P] of a person's face, while the window is open, that their own arms and hands hide, beyond what
-    they hide from everywhere before it: who buries the face in the hands cannot be seen otherwise.
+    """Share [P] of a person's face, while the window is open, that their own arms and hands hide, or what
+    these hold, beyond what they hide from everywhere before it: who buries the face in the hands cannot be
+    seen otherwise.
 
     Asked of eyes and nose. 0 for what is no person.
     """
@@ -112,13 +135,20 @@ def face_covered(takes: Takes, subject: Subject, at: NDArray[np.int64], camera: 
     around = [cos * face[:, 0] - sin * face[:, 1], sin * face[:, 0] + cos * face[:, 1]]
     level = np.stack([*around, np.broadcast_to(face[:, 2], around[0].shape)], axis=-1)
     before = points[:, 0] + _AWAY * level
-    least = _behind_arms(before, points, arms, subject.height).min(axis=0)  # [F]
-    hidden = _behind_arms(camera, points, arms, subject.height)
+
+    def hidden_from(camera: Array) -> Array:
+        behind = _behind_arms(camera, points, arms, subject.height)
+        for box in subject.in_hand:
+            behind |= box.before(at, camera, points, _SKIN)
+        return np.asarray(behind.mean(axis=-1))
+
+    least = hidden_from(before).min(axis=0)  # [F]
+    hidden = hidden_from(camera)
     return mean_of(np.maximum(hidden - least, 0.0), takes.window)
 
 
-def _behind_arms(camera: Array, points: Array, arms: Array, height: float) -> Array:
-    """Share [P, F] of points [F, K, 3] that a body's arms [F, 2, 3, 3] hide from cameras [P, F, 3]."""
+def _behind_arms(camera: Array, points: Array, arms: Array, height: float) -> Bools:
+    """Which of points [F, K, 3] a body's arms [F, 2, 3, 3] hide from cameras [P, F, 3], [P, F, K]."""
     upper, lower = arms[:, :, 1] - arms[:, :, 0], arms[:, :, 2] - arms[:, :, 1]
     reach = 1.0 + _HAND * height / np.maximum(length(lower), 1e-6)
     begins = np.concatenate([arms[:, :, 0], arms[:, :, 1]], axis=1)[None, :, None]  # [1, F, 1, limbs, 3]
@@ -126,7 +156,7 @@ def _behind_arms(camera: Array, points: Array, arms: Array, height: float) -> Ar
     rays = points - camera[:, :, None]
     rays = rays * np.maximum(1.0 - _SKIN / np.maximum(length(rays), 1e-6), 0.0)[..., None]
     away = _apart(camera[:, :, None, None], rays[..., None, :], begins, limbs)
-    return np.asarray((away < _ARM * height).any(axis=-1).mean(axis=-1))
+    return np.asarray((away < _ARM * height).any(axis=-1))
 
 
 def _apart(camera: Array, ray: Array, begin: Array, limb: Array) -> Array:

@@ -19,7 +19,7 @@ from . import space
 from .company import company_cut, company_shown
 from .composition import framing, size_error
 from .framing import Array
-from .gestures import face_covered, gesture_lost, hands_missed
+from .gestures import act_missed, face_covered, gesture_lost, hands_missed
 from .score import geometry_score as geometry_score
 from .sight import backdrop_gaps, clear_lines, clear_of_people, hidden_walls
 from .subject import SIGHT, Subject
@@ -48,9 +48,10 @@ MEASURES = (
     "empty",  # share of the time in which neither any of the subject nor any of those points is in the frame,
     # and more by ENDS_EMPTY where the last frame is such a one
     "walk_missed",  # share of the way the subject goes on which nothing of it is seen; 0 for a step or two
+    "act_missed",  # share of the way hands go at work on which nothing of the subject is seen
     "hands_missed",  # share of the time hands are at work in which neither is seen; 0 for close-ups
     "gesture_lost",  # how little hands at work stand out from the body in the picture; 0 for close-ups
-    "face_covered",  # share of the face that the subject's own arms hide, beyond what they have to
+    "face_covered",  # share of the face that the subject's own arms hide, or what these hold, and need not
     "company_cut",  # share of the time somebody beside the subject is in the picture without their head, and
     # more where the last frame is such a one
     "foreground",  # share of the picture covered by something much nearer than the subject
@@ -119,6 +120,7 @@ def measure(takes: Takes, subject: Subject, world: World, fps: float) -> Measure
     hands = [SIGHT.index(name) for name in ("hand_l", "hand_r")]
     in_sight = inside[:, :, sight_index] & seen
     values["walk_missed"] = _missed(points[:, names.index("waist")], in_sight)
+    values["act_missed"] = act_missed(subject, at, in_sight)
     values["hands_missed"] = hands_missed(takes, subject, at, camera, in_sight[:, :, hands])
     values["gesture_lost"] = gesture_lost(takes, subject, at, picture, in_sight[:, :, hands])
     values["face_covered"] = face_covered(takes, subject, at, camera)

@@ -28,6 +28,7 @@ PENALTIES = {
     "face_covered": 0.4,
     "empty": 0.6,
     "walk_missed": 0.4,
+    "act_missed": 0.4,
     "head_cropped": 0.2,
     "hands_missed": 0.15,
     "gesture_lost": 0.1,

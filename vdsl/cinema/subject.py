@@ -15,6 +15,8 @@ from scipy.ndimage import gaussian_filter1d
 
 from runtime.body.skeleton import JOINT, Skeleton
 
+from .in_hand import Box
+
 #: Points whose sight makes a subject visible, most telling first.
 SIGHT = ("eyes", "chin", "pocket", "waist", "hand_l", "hand_r", "knees")
 
@@ -44,6 +46,7 @@ class Subject:
     company: of people everybody else who is about, of a place those who are ever in it
     bounds: of a place, its lower and its upper corner
     arms: float64 [T, 2, 3, 3], shoulder, elbow and wrist of the left arm and the right; None without any
+    in_hand: what they hold
     """
 
     name: str
@@ -57,6 +60,7 @@ class Subject:
     via: NDArray[np.float64] | None = None
     via_face: NDArray[np.float64] | None = None
     arms: NDArray[np.float64] | None = None
+    in_hand: tuple[Box, ...] = ()
     company: tuple[Subject, ...] = ()
     bounds: tuple[tuple[float, ...], tuple[float, ...]] | None = None
 
@@ -92,6 +96,7 @@ class Subject:
             members=members,
             via=via,
             arms=arms,
+            in_hand=tuple(box.shifted(up) for box in self.in_hand),
             company=company,
         )
 
@@ -180,6 +185,7 @@ def group(people: Sequence[Subject]) -> Subject:
         face=face,
         members=tuple(people),
         arms=None,
+        in_hand=(),
     )
 
 

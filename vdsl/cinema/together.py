@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from .composition import broken
 from .framing import Array
-from .gestures import face_covered, gesture_lost, hands_missed
+from .gestures import act_missed, face_covered, gesture_lost, hands_missed
 from .sight import clear_of_people
 from .subject import SIGHT, Subject
 from .takes import Bools, Takes, mean_of, pictured, turned, visibility, within
@@ -120,11 +120,12 @@ def everybody_measured(
         seen = seen_from(points) & clear_of_people(camera, points, bodies)
         found.append(visibility(takes, inside, seen) | {"head_cropped": broken(takes, one, picture)})
         shown = (inside & seen)[:, :, [SIGHT.index(name) for name in ("hand_l", "hand_r")]]
+        found[-1]["act_missed"] = act_missed(one, at, inside & seen)
         found[-1]["hands_missed"] = hands_missed(takes, one, at, camera, shown)
         found[-1]["gesture_lost"] = gesture_lost(takes, one, at, picture, shown)
     worst = {"head_cropped": np.max, "visibility": np.min, "head_visible": np.min, "ends_visible": np.min}
     out = {k: np.asarray(of([each[k] for each in found], axis=0)) for k, of in worst.items()}
-    out |= {name: found[0][name] for name in ("hands_missed", "gesture_lost")}  # of who acts
+    out |= {name: found[0][name] for name in ("act_missed", "hands_missed", "gesture_lost")}  # of who acts
     out["face_covered"] = face_covered(takes, subject.members[0], at, camera)
     return out | {"face": _faces(takes, subject, at, camera)}
 

@@ -23,7 +23,7 @@ from .casting import Scene
 from .designer import judged, picks
 from .filming import segment_frames
 from .guides import About, about_of
-from .hints import frame_hints_of
+from .hints import frame_hints_of, meant
 from .labels import classes
 from .perturb import mistyped, perturbed
 
@@ -54,7 +54,8 @@ class Clip:
 
     kind: ``designer``, ``passed-over``, ``perturbed`` or ``mistyped``; opinion: the designer's, as
     :func:`vdsl.pipeline.designer.judged`; words: movement, size and angle as classes, None for what it does
-    not show clearly; frames: what is known of each judged frame in numbers; about: what it is about
+    not show clearly; frames: what is known of each judged frame in numbers; meant: whether its subject is to
+    be in the picture of that; about: what it is about
     doubtful: whether it is bad for reasons that no picture shows, or hardly bad; bare: whether its guides are
     enough
     """
@@ -65,6 +66,7 @@ class Clip:
     opinion: float
     words: Words
     frames: dict[str, list[float]] = field(default_factory=dict)
+    meant: list[int] = field(default_factory=list)
     about: About = _NOTHING
     doubtful: bool = False
     bare: bool = False
@@ -105,13 +107,11 @@ def clips_of(scene: Scene, rng: np.random.Generator) -> list[Clip]:
                 made.append(_bare(scene, shot, grid, camera, float(thought)))
         about = about_of(shot, grid, scene.filming, scene.staged)
         for clip in made:
-            out.append(replace(clip, frames=_frames(scene, shot, grid, clip.camera), about=about))
+            story = grid.story[clip.camera.story]
+            subject, at = subject_of(shot, story, scene.filming), segment_frames(story.frames)
+            told = frame_hints_of(clip.camera, subject, at)
+            out.append(replace(clip, frames=told, meant=meant(clip.camera, at), about=about))
     return out
-
-
-def _frames(scene: Scene, shot: Shot, grid: ProposalGrid, camera: CameraProposal) -> dict[str, list[float]]:
-    story = grid.story[camera.story]
-    return frame_hints_of(camera, subject_of(shot, story, scene.filming), segment_frames(story.frames))
 
 
 def _passed_over(

@@ -42,7 +42,7 @@ from .labels import WORDS
 from .progress import Progress, Silence
 
 #: Raised when other takes or labels come of the same seed.
-_RECIPE = 19
+_RECIPE = 20
 _PROPOSALS = 16
 _DRAWN_AT_ONCE = 64
 _SHARD = 64
@@ -241,6 +241,7 @@ def _filmed(scene: Scene, making: _Making, camerawork: Camerawork) -> _Filmed | 
             "cast": list(scene.cast),
             "hints": hints_of(c),
             "frames": clip.frames,
+            "meant": clip.meant,
             "opinion": round(clip.opinion, 4),
             **({"grade": round(clip.grade, 4)} if clip.kind == "designer" else {}),
             **({"doubtful": True} if clip.doubtful else {}),

@@ -41,6 +41,7 @@ def qualities(measures: Measures) -> dict[str, Array]:
         "visibility": m["visibility"]
         * m["head_visible"]
         * (1.0 - 0.6 * m["face_covered"])
+        * (1.0 - 0.4 * m["act_missed"])
         * (1.0 - 0.3 * m["gesture_lost"])
         * (0.25 + 0.5 * turned + 0.25 * m["interest"]),
         "framing": m["in_frame"]

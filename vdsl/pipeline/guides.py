@@ -67,10 +67,13 @@ def about_of(shot: Shot, grid: ProposalGrid, filming: Filming, staged: StagedSce
 
 
 def _objects_of(shot: Shot, grid: ProposalGrid, filming: Filming, staged: StagedScene) -> tuple[int, ...]:
-    """Ids of what the cameras of a shot are about; none for a place, which is everything there is."""
+    """Ids of what the cameras of a shot are about; of a place, which is everything there is, of who is in it:
+    their heads and faces are what is looked at there."""
     if not grid.story:
         return ()
     subject = subject_of(shot, grid.story[0], filming)
+    if subject.kind == "place":
+        return tuple(staged.object_ids[one.name] for one in subject.company)
     if subject.kind == "person":
         names = tuple(subject.heads) or (subject.name,)
         return tuple(staged.object_ids[name] for name in names if name in staged.object_ids)

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from ..cinema.flaws import flaws_by_measure
 from ..cinema.subject import Subject
+from ..cinema.takes import samples
 from ..cinema.track import camera_axes, project
 from ..propose.types import CameraProposal
 from .designer import qualities
@@ -91,3 +92,10 @@ def frame_hints_of(camera: CameraProposal, subject: Subject, at: NDArray[np.int6
         "over": np.clip(position[:, 2] - subject.landmarks["eyes"][at, 2], -_FAR, _FAR),
     }
     return {k: [round(float(x), 4) for x in v] for k, v in sorted(found.items())}
+
+
+def meant(camera: CameraProposal, at: NDArray[np.int64]) -> list[int]:
+    """1 where the subject is meant to be in the picture of the frames ``at``, else 0, as it is at the nearest
+    of those that are measured."""
+    measured = samples(len(camera.track.position))
+    return [int(camera.window[np.abs(measured - frame).argmin()]) for frame in at]

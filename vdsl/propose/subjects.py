@@ -18,6 +18,7 @@ from ..cinema.subject import Subject, group, peopled, person, place, thing
 from ..lang.ir import Shot, Target
 from ..library import Catalog
 from .focusing import Foci, Held
+from .holding import in_hand
 from .types import STILL, Performance, StoryProposal
 
 Array = NDArray[np.float64]
@@ -82,7 +83,9 @@ def _subject(shot: Shot, story: StoryProposal, filming: Filming) -> Subject:
 
 
 def _person(name: str, story: StoryProposal, filming: Filming) -> Subject:
-    return performed(name, story.performances[name], filming.skeletons[name])
+    one = performed(name, story.performances[name], filming.skeletons[name])
+    held = in_hand(one, story, filming.world)
+    return replace(one, in_hand=held) if held else one
 
 
 @lru_cache(maxsize=64)  # asked for again for every camera, and in every story of a line by most of the cast

@@ -34,7 +34,8 @@ class Batch(NamedTuple):
     query: None where guides alone are looked at; professional: 1 or less for good ones, by their grade,
         NaN for doubtful ones
     liked [B], how well good ones are liked among themselves; NaN is not known
-    hints [B, K], marks [B, T, M] of the query's frames, mapped [B, T, M] of all: NaN is not known
+    hints [B, K], marks [B, T, M] of the query's frames, mapped [B, T, M] and meant [B, T] of those that
+        guides are of: NaN is not known
     moved [B, pairs, NUMBERS], likewise; guides of all frames, with zeros for maps where they are kept back
     """
 
@@ -48,6 +49,7 @@ class Batch(NamedTuple):
     hints: Tensor
     marks: Tensor
     mapped: Tensor
+    meant: Tensor
     moved: Tensor | None
     guides: Guided | None
     clips: Tensor
@@ -136,6 +138,7 @@ def _batch(
         torch.from_numpy(hints),
         torch.from_numpy(np.stack([view.marks for view in views])),
         torch.from_numpy(np.stack([view.mapped for view in views])),
+        torch.from_numpy(np.stack([view.meant for view in views])),
         own,
         _guided(views),
         torch.from_numpy(clips),
@@ -147,7 +150,8 @@ class _View:
     """A clip as it is looked at once.
 
     pictures: uint8 [query + key frames, S, S, 3], or nothing; times: of these; marks: of the query's frames
-    guides: None in a set without; told_at, mapped: times and marks of the frames they are of
+    guides: None in a set without; told_at, mapped, meant: times and marks of the frames they are of, and
+        whether these are meant to show the subject
     flipped: whether it is seen in the mirror; kept_back: whether its guides are not to be known
     """
 
@@ -157,6 +161,7 @@ class _View:
     guides: Guides | None
     told_at: NDArray[np.float32]
     mapped: NDArray[np.float32]
+    meant: NDArray[np.float32]
     flipped: bool
     kept_back: bool
 
@@ -193,9 +198,10 @@ def _view(
         guides = Guides(
             guides.maps[:, seen] * np.uint8(not kept_back), guides.flow * unknown, guides.marks[:, seen]
         )
-    mapped = marks[seen] * np.float32(np.nan if kept_back else 1)
+    known = np.float32(np.nan if kept_back else 1)
+    mapped, meant = marks[seen] * known, data.meant[index][seen] * known
     return _View(
-        pictures, times[picked], marks[picked[:count]], guides, times[seen], mapped, flipped, kept_back
+        pictures, times[picked], marks[picked[:count]], guides, times[seen], mapped, meant, flipped, kept_back
     )
 
 

@@ -36,8 +36,9 @@ _OTHERS = [POINTS.index(p) for p in ("other_1", "other_2")]
 COMPOSED = len(MARKS) + len(POINTS) + 12 + len(_TOPS) + len(_LOOKS) + len(_NEARER) + 7 + 2 * len(POINTS)
 #: Which of them says whether the eyes are in the frame.
 EYES_INSIDE = COMPOSED - len(POINTS) + POINTS.index("eyes")
-#: Numbers that :func:`over_time` makes of each of a frame's.
-SUMMED = 10
+#: Numbers that :func:`over_time` makes of each of a frame's, and :func:`over_window`.
+SUMMED, WINDOWED = 10, 3
+_APART = 8.0  # what keeps a frame that is not meant from being the least or the most
 
 
 def composed(told: Tensor, nearness: Tensor) -> Tensor:
@@ -119,6 +120,14 @@ def over_time(features: Tensor, times: Tensor, inside: Tensor) -> Tensor:
     weight = weight / (weight.sum(2, keepdim=True) + 1e-3)
     parts = torch.einsum("bwt,btd->bwd", weight, features).flatten(1)
     return torch.cat([fuse(features, times), features.amin(1), features.amax(1), parts], 1)
+
+
+def over_window(features: Tensor, meant: Tensor) -> Tensor:
+    """Average, least and most of features [B, T, D] of the frames that are meant [B, T], 0..1: [B, 3 D]."""
+    share = meant.unsqueeze(2)
+    average = (share * features).sum(1) / (share.sum(1) + 1e-3)
+    apart = _APART * (1 - share)
+    return torch.cat([average, (features + apart).amin(1), (features - apart).amax(1)], 1)
 
 
 def fuse(features: Tensor, times: Tensor) -> Tensor:

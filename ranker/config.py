@@ -28,7 +28,8 @@ class ModelConfig:
     measures, marks: numbers of L_h of a shot, and of a frame, that are read off the features before the heads
         judge, 0 for none
     first_fault, faults: which of the measures, one after the other, say by log odds that a shot has a fault
-    guides: width of what is made of guides, 0 for none
+    guides: width of what is made of guides, 0 for none; meant: whether the frames of these that are meant to
+        show the subject are found, and looked at by themselves
     liking: what log odds of being liked well count beside those of being good
     """
 
@@ -47,6 +48,7 @@ class ModelConfig:
     faults: int = 0
     marks: int = 0
     guides: int = 0
+    meant: bool = False
     liking: float = 0.0
 
     @property
@@ -78,7 +80,8 @@ class TrainConfig:
     for all phases that look at guides alone, and once for those that look at pictures.
 
     contrast_weight, class_weight, hint_weight, order_weight: factors of L_q, L_c, L_h and L_o (0 leaves the
-        loss out); fault_weight: of faults beside what else is known, in L_h
+        loss out); fault_weight: of faults beside what else is known, in L_h; good_weight: of how good a shot
+        is by each criterion, which counts there once more
     dictionary, momentum, temperature: K, the momentum encoder's m and τ of L_q
     motion, moments: as in :class:`ModelConfig`; unmoved: share of the clips whose motion is kept from the
         heads, since a glance at a shot does not have it
@@ -107,6 +110,7 @@ class TrainConfig:
     hint_weight: float = 0.0
     order_weight: float = 0.0
     fault_weight: float = 1.0
+    good_weight: float = 0.0
     dictionary: int = 6553
     momentum: float = 0.999
     temperature: float = 0.07
@@ -145,6 +149,7 @@ CPU = TrainConfig(
     contrast_weight=0.25,
     hint_weight=3.0,
     order_weight=4.0,
+    good_weight=0.5,
     unguided=0.5,
     smoothing=0.02,
 )
@@ -183,8 +188,8 @@ def model_from_json(values: dict[str, Any]) -> ModelConfig:
         further = ("motion", "measures", "first_fault", "faults", "marks", "guides")
         rest |= {k: int(values.get(k, 0)) for k in further}
         rest["inner"] = int(values.get("inner", rest["size"]))
-        moments, liking = bool(values.get("moments", False)), float(values.get("liking", 0.0))
-        rest |= {"backbone": str(values["backbone"]), "moments": moments, "liking": liking}
+        rest |= {k: bool(values.get(k, False)) for k in ("moments", "meant")}
+        rest |= {"backbone": str(values["backbone"]), "liking": float(values.get("liking", 0.0))}
         config = ModelConfig(**words, **rest)
     except (KeyError, TypeError, ValueError) as error:
         raise RankerError(f"the ranker's config is not understood: {error!r}") from error

@@ -35,6 +35,8 @@ SHARD = 64
 MIRRORED = "right"
 #: Such say that a clip has a fault: 1 for one that has, 0 for one that has not.
 FAULT = "fault_"
+#: Such say how good it is by some criterion.
+GOOD = "good_"
 _LEAST = 0.2  # of the deviation of all clips, that a hint has at least among positives
 
 
@@ -281,15 +283,31 @@ class Dataset:
     def faults(self) -> slice:
         """Which of the hints are of faults: one after the other, since they stand in the order of their
         names."""
+        return self._named(FAULT)
+
+    @property
+    def goods(self) -> slice:
+        """Which of them say how good a clip is by some criterion."""
+        return self._named(GOOD)
+
+    def _named(self, begin: str) -> slice:
         names = self.hints[0]
-        first = next((k for k, name in enumerate(names) if name.startswith(FAULT)), 0)
-        return slice(first, first + sum(name.startswith(FAULT) for name in names))
+        first = next((k for k, name in enumerate(names) if name.startswith(begin)), 0)
+        return slice(first, first + sum(name.startswith(begin) for name in names))
 
     @cached_property
     def frame_hints(self) -> tuple[tuple[str, ...], NDArray[np.float32]]:
         """The same of single frames (``frames`` of a label's ``about``): float32 [N, T, K]."""
         told = [label.about.get("frames") or {} for label in self.labels]
         return _standard(told, (self.frames,), self.professional > 0.5)
+
+    @cached_property
+    def meant(self) -> NDArray[np.float32]:
+        """Whether the subject is meant to be in the picture of a frame (``meant`` of a label's ``about``),
+        float32 [N, T]: 1 or 0, NaN where not known."""
+        unknown = [np.nan] * self.frames
+        told = [label.about.get("meant") or unknown for label in self.labels]
+        return np.array(told, np.float32).reshape(-1, self.frames)
 
     @cached_property
     def professional(self) -> NDArray[np.float32]:

@@ -12,7 +12,7 @@ from typing import NamedTuple
 import torch
 from torch import Tensor, nn
 
-from .composed import COMPOSED, EYES_INSIDE, SUMMED, composed, over_time
+from .composed import COMPOSED, EYES_INSIDE, SUMMED, WINDOWED, composed, over_time, over_window
 from .guides import CHANNELS, FLOW, MARKS, SIDE, Guides, pairs
 
 _MAPS, _WIDE, _FRAME = 128, 256, 160  # numbers that describe the maps of a frame, and all of a frame
@@ -20,6 +20,7 @@ _PATCH, _PATCHES = 4, 32  # cells along what is first summed up of a map, and nu
 _PAIR, _MOVED = 64, 256  # and a pair of frames, all pairs
 _PACES = 3  # numbers of how fast a camera turns
 _HALF_SENSOR, _SLOW = 18.0, 0.2  # millimetres; radians a second
+_ASKED, _MOMENTS = 64, 8  # of who tells which frames are meant: its width, and places in time it tells apart
 _LEAST = 0.1  # of the deviation of all shots, that good ones are taken to have at least
 _FINE = 20.0  # by what motion is multiplied, so that slow ones are seen
 
@@ -75,13 +76,44 @@ class Evened(nn.Module):
         return torch.asinh((numbers - self.middle) / self.spread)
 
 
+class Window(nn.Module):
+    """Which frames of a shot are meant to show its subject, by what they show and how the camera moves: log
+    odds [B, T].
+
+    A pan that comes to somebody is to be judged by how it ends, one that leaves them by how it begins.
+    """
+
+    def __init__(self, frame: int, moved: int) -> None:
+        super().__init__()
+        self.moved, self.frame = nn.Linear(moved, _ASKED), nn.Linear(frame + _MOMENTS, _ASKED, bias=False)
+        self.last = nn.Sequential(nn.ReLU(), nn.Linear(_ASKED, _ASKED), nn.ReLU(), nn.Linear(_ASKED, 1))
+
+    def forward(self, frames: Tensor, moved: Tensor, times: Tensor) -> Tensor:
+        """frames: [B, T, frame]; moved: of shots, [B, moved]; times: [B, T], 0..1"""
+        marked = torch.arange(_MOMENTS, device=times.device) / (_MOMENTS - 1)
+        moment = (1 - (_MOMENTS - 1) * (times.unsqueeze(2) - marked).abs()).clamp_min(0)
+        seen = self.frame(torch.cat([frames, moment], 2)) + self.moved(moved).unsqueeze(1)
+        return self.last(seen).squeeze(2)
+
+
+class Description(NamedTuple):
+    """What a network says of B shots by their guides: of frames float32 [B, T, frame], and of shots
+    [B, shot]; meant: log odds [B, T] that a frame is meant to show the subject, [B, 0] where that is not told
+    """
+
+    frames: Tensor
+    shot: Tensor
+    meant: Tensor
+
+
 class GuideNet(nn.Module):
     """A description of every frame by its maps and marks, and of a shot by these and the camera's motion.
 
-    frames: of a whole shot
+    frames: of a whole shot; meant: whether it tells which of them are meant to show the subject, and sums
+        these up as well
     """
 
-    def __init__(self, frames: int) -> None:
+    def __init__(self, frames: int, meant: bool = False) -> None:
         super().__init__()
         first = (nn.Conv2d(len(CHANNELS), _PATCHES, _PATCH, _PATCH), nn.ReLU())
         second = (nn.Conv2d(_PATCHES, 2 * _PATCHES, 3, 2, 1), nn.GroupNorm(8, 2 * _PATCHES), nn.ReLU())
@@ -96,6 +128,10 @@ class GuideNet(nn.Module):
         )
         self.moved = nn.Sequential(nn.Linear(_PAIR * len(pairs(frames)), _MOVED), nn.ReLU(), nn.Dropout(0.1))
         self.frame, self.shot = _FRAME + COMPOSED, SUMMED * (_FRAME + COMPOSED) + _MOVED + _PACES
+        self.window: Window | None = None
+        if meant:
+            self.window = Window(self.frame, _MOVED + _PACES)
+            self.shot += WINDOWED * self.frame
 
     @torch.no_grad()
     def fit(self, seen: Guided, good: Tensor) -> None:
@@ -104,8 +140,7 @@ class GuideNet(nn.Module):
         chosen = good if good.any() else torch.ones_like(good)
         self.evened.fit(numbers[chosen].flatten(0, 1), numbers.flatten(0, 1))
 
-    def forward(self, seen: Guided) -> tuple[Tensor, Tensor]:
-        """Descriptions of frames float32 [B, T, frame], and of shots [B, shot]."""
+    def forward(self, seen: Guided) -> Description:
         batch, count = seen.maps.shape[:2]
         maps = seen.maps.flatten(0, 1).movedim(-1, 1).float() / 255
         with torch.autocast(maps.device.type, enabled=False):
@@ -119,9 +154,15 @@ class GuideNet(nn.Module):
         moved = self.pairs(torch.cat([flow, fine], 1)).view(batch, _PAIR * seen.flow.shape[1])
         moved = self.moved(moved) * seen.flow.isfinite().flatten(1).all(1, keepdim=True)
         with torch.autocast(maps.device.type, enabled=False):
-            summed = over_time(frames.float(), seen.times, inside)
-            paces = _paces(seen)
-        return frames.float(), torch.cat([summed, moved.float(), paces], 1)
+            frames, goes = frames.float(), torch.cat([moved.float(), _paces(seen)], 1)
+            shot = torch.cat([over_time(frames, seen.times, inside), goes], 1)
+            if self.window is None:
+                return Description(frames, shot, shot[:, :0])
+            meant = self.window(frames, goes, seen.times)
+            windowed = over_window(
+                frames, meant.detach().sigmoid()
+            )  # who judges is not to say what was meant
+            return Description(frames, torch.cat([shot, windowed], 1), meant)
 
 
 def _paces(seen: Guided) -> Tensor:

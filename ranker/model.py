@@ -22,7 +22,7 @@ from torch.nn import functional
 from .composed import fuse
 from .config import ModelConfig
 from .engine import quick_bfloat16
-from .guided import Guided, GuideNet
+from .guided import Description, Guided, GuideNet
 from .guides import pairs
 from .losses import STEP_ODDS, STEPS
 from .motion import NUMBERS
@@ -46,7 +46,8 @@ class Output(NamedTuple):
     :data:`ranker.losses.STEPS`; movement, scale, angle [B, classes], logits of p_c; feature [B, D], the
     average of the frames' features; contrast [B, C], unit vectors z of L_q; told [B, measures], what is read
     off the features of the numbers of L_h; marked [B, T, marks], the same of single frames; mapped [B, T,
-    marks], what is told of frames by their guides
+    marks], what is told of frames by their guides; meant [B, T], by these, log odds that a frame is meant to
+    show the subject, [B, 0] where that is not asked
     """
 
     logit: Tensor
@@ -59,15 +60,17 @@ class Output(NamedTuple):
     told: Tensor
     marked: Tensor
     mapped: Tensor
+    meant: Tensor
 
 
 class _Judgement(NamedTuple):
     """judged [B, judgements]: logit, steps of liking, classes, one after the other; told [B, measures]
-    and marked [B, T, marks], what that is said by"""
+    and marked [B, T, marks], what that is said by; meant: as in :class:`Output`"""
 
     judged: Tensor
     told: Tensor
     marked: Tensor
+    meant: Tensor
 
 
 class Pool(nn.Module):
@@ -135,7 +138,7 @@ class ShotRanker(nn.Module):
             self.faults = nn.Parameter(torch.ones(config.faults))
         self.guided: GuideNet | None = None
         if config.guides:
-            self.guided = GuideNet(config.frames)
+            self.guided = GuideNet(config.frames, config.meant)
             wide = 2 * config.guides
             gathered = nn.Sequential(nn.Linear(self.guided.shot, wide), nn.ReLU(), nn.Dropout(0.1))
             last = nn.Sequential(nn.Linear(wide, config.guides), nn.ReLU(), nn.Dropout(0.1))
@@ -189,9 +192,10 @@ class ShotRanker(nn.Module):
             average = features[:, :, : self.width].mean(1)
             shown = self._by_pictures(features, times, moved, pictures)
             judged, told, mapped = shown.judged, shown.told, features.new_zeros(*features.shape[:2], 0)
+            meant = shown.meant
             if self.guided is not None and guides is not None:
                 by_guides = self._by_guides(self.guided, guides)
-                known, mapped = guides.known.unsqueeze(1), by_guides.marked
+                known, mapped, meant = guides.known.unsqueeze(1), by_guides.marked, by_guides.meant
                 both = by_guides.judged + self.trusted * judged if pictures else by_guides.judged
                 judged = torch.where(known, both, judged)
                 told = torch.where(known, by_guides.told, told)
@@ -199,7 +203,7 @@ class ShotRanker(nn.Module):
             contrast = functional.normalize(self.contrast(average), dim=1)
             classes = (movement, scale, angle)
             logit = professional.squeeze(1)
-            return Output(logit, liked, *classes, average, contrast, told, shown.marked, mapped)
+            return Output(logit, liked, *classes, average, contrast, told, shown.marked, mapped, meant)
 
     def _by_pictures(
         self, features: Tensor, times: Tensor, moved: Tensor | None, pictures: bool
@@ -224,13 +228,14 @@ class ShotRanker(nn.Module):
                 marked = self.marker(features)
             judged = judged + self.reasons(torch.cat([told, *self._over_time(marked, times)], 1))
             judged = self._faultless(judged, told, self.faults)
-        return _Judgement(judged, told, marked)
+        return _Judgement(judged, told, marked, judged[:, :0])
 
     def _by_guides(self, guided: GuideNet, guides: Guided) -> _Judgement:
         """What is said of shots by their guides."""
         kind = guides.maps.device.type
         with torch.autocast(kind, torch.bfloat16, enabled=self.training and quick_bfloat16(kind)):
-            frames, shot = guided(guides)
+            described: Description = guided(guides)
+        frames, shot = described.frames, described.shot
         gathered = self.gathered(shot)
         judged, told = self.straight(shot).split((sum(self._sizes), self.config.measures), 1)
         judged = judged + self.judged(gathered)
@@ -242,7 +247,7 @@ class ShotRanker(nn.Module):
             known = torch.cat([told, *self._over_time(marked, guides.times)], 1)
             judged = judged + self.reasons_guided(known)
             judged = self._faultless(judged, told, self.faults_guided)
-        return _Judgement(judged, told, marked)
+        return _Judgement(judged, told, marked, described.meant)
 
     def _faultless(self, judged: Tensor, told: Tensor, counts: Tensor) -> Tensor:
         """Judgements of which those of being good and of being liked hold only for a shot without faults.

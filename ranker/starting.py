@@ -20,6 +20,8 @@ from .weights import load_tensors
 #: Parameters with an entry for each number of L_h: along which axis, and which numbers these are.
 _TOLD = {"reader": 0, "reader_guided": 0, "reader_moved": 0, "straight": 0, "reasons": 1, "reasons_guided": 1}
 _FAULTS = ("faults", "faults_guided")
+#: Those that read all that describes a shot by its guides.
+_READ = ("gathered.0.weight", "straight.weight")
 
 
 def take_over(
@@ -38,6 +40,11 @@ def take_over(
             f"{folder}: are weights of a {others.backbone}, and no {words.backbone} can start from them"
         )
     told: list[str] = list(card.data.get("hints") or ())
+    if words.meant and not others.meant:  # what is read of these frames comes last, and says nothing at first
+        for name in _READ:
+            if name in other and name in ours:
+                other[name] = _widened(other[name], ours[name])
+                ours[name][:, other[name].isnan().any(0)] = 0.0
     if told != list(hints) and len(told) == others.measures and len(hints) == words.measures and told:
         other = {k: _in_order(k, v, ours.get(k), (told, others), (hints, words)) for k, v in other.items()}
     fit = {k: v for k, v in other.items() if k in ours and v.shape == ours[k].shape}
@@ -46,6 +53,13 @@ def take_over(
             fit = {k: v for k, v in fit.items() if not k.startswith(name)}
     model.load_state_dict(ours | {k: v.where(v.isfinite(), ours[k]) for k, v in fit.items()})
     return card.sha256, fit
+
+
+def _widened(value: Tensor, ours: Tensor) -> Tensor:
+    """A matrix with as many columns as ours, NaN in those that are new."""
+    out = value.new_full((value.shape[0], ours.shape[1]), torch.nan)
+    out[:, : value.shape[1]] = value
+    return out
 
 
 def _in_order(

@@ -95,6 +95,7 @@ def train(
         faults=data.faults.stop - data.faults.start if config.hint_weight else 0,
         marks=len(data.frame_hints[0]) if config.hint_weight and data.hints[0] else 0,
         guides=config.guides if data.guided is not None else 0,
+        meant=bool(config.guides and data.guided is not None and np.isfinite(data.meant).any()),
         liking=LIKING if config.order_weight and np.isfinite(data.liked).any() else 0.0,
     )
     if not shape.guides and any(phase.size == 0 for phase in config.phases):
@@ -135,7 +136,7 @@ def train(
                     pace = 0.0 if apart and group["guided"] and phase.size else 1.0
                     group["lr"] = pace * group["pace"] * learning_rate(config, before + number, total)
 
-                parts = _losses(model, keys, dictionary, batch, config, device)
+                parts = _losses(model, keys, dictionary, batch, config, device, data.goods)
                 loss = parts[0] + config.class_weight * parts[1] + config.contrast_weight * parts[2]
                 loss = loss + config.hint_weight * parts[3] + config.order_weight * parts[4]
                 optimizer.zero_grad(set_to_none=True)
@@ -302,8 +303,12 @@ def _losses(
     batch: Batch,
     config: TrainConfig,
     device: torch.device,
+    goods: slice,
 ) -> tuple[Tensor, Tensor, Tensor, Tensor, Tensor]:
-    """L_b, L_c, L_q, L_h and L_o of a batch; its keys go into the dictionary afterwards."""
+    """L_b, L_c, L_q, L_h and L_o of a batch; its keys go into the dictionary afterwards.
+
+    goods: which of the numbers of L_h say how good a shot is by each criterion
+    """
     with _autocast(config, device):
         out = model(*_seen(batch, device))
     binary = binary_loss(out.logit, batch.professional.to(device), config.smoothing)
@@ -315,11 +320,14 @@ def _losses(
         plain = torch.ones(told.shape[1], dtype=torch.bool, device=device)
         plain[faults] = False
         hint = hint_loss(told[:, plain], hints[:, plain])
+        hint = hint + config.good_weight * hint_loss(told[:, goods], hints[:, goods])
         hint = hint + config.fault_weight * fault_loss(told[:, faults], hints[:, faults])
         if out.marked.shape[2] and batch.query is not None:
             hint = hint + hint_loss(out.marked, batch.marks.to(device))
         if out.mapped.shape[2]:
             hint = hint + hint_loss(out.mapped, batch.mapped.to(device))
+        if out.meant.shape[1]:
+            hint = hint + fault_loss(out.meant, batch.meant.to(device))
     order = torch.zeros((), device=device)
     if config.order_weight:
         order = liking_loss(out.liked, batch.liked.to(device))

@@ -7,7 +7,9 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from vdsl.cinema.flaws import flaws_by_measure
 from vdsl.cinema.gestures import _apart, face_covered, gesture_lost
+from vdsl.cinema.in_hand import box_of
 from vdsl.cinema.sizes import size_of
 from vdsl.cinema.subject import Subject
 from vdsl.cinema.takes import Takes, pictured
@@ -126,3 +128,72 @@ def test_who_guards_the_face_is_filmed_from_where_it_is_seen() -> None:
     assert covered.max() > 0.3
     best = max(cameras, key=lambda c: c.measures["geometry"])
     assert best.measures["face_covered"] < 0.2
+
+
+def test_a_camera_that_comes_when_all_is_done_has_a_fault() -> None:
+    _, cameras = filmed("(anna raise hands)", "pan-left medium eye-level")
+    missed = np.array([c.measures["act_missed"] for c in cameras])
+    assert missed.min() < 0.5 < missed.max() <= 1.0
+    late = cameras[int(missed.argmax())]
+    assert bool(flaws_by_measure(late.measures)["act_missed"])
+    best = max(cameras, key=lambda c: c.measures["geometry"])
+    assert best.measures["act_missed"] < 0.5
+    for line, camera in (("(anna clap)", "static medium"), ("(anna walk there)", "whip-pan-right medium")):
+        assert {c.measures["act_missed"] for c in filmed(line, camera)[1]} == {0.0}, line
+
+
+def test_a_thing_in_hand_before_the_face_counts_where_another_side_shows_it() -> None:
+    act, cameras = filmed("(anna clap)", "static close-up eye-level")
+    told = tell(act.state, act.line, act.filming, shot=act.line.shots[0]).proposals[0]
+    plain = subject_of(act.line.shots[0], told, act.filming)
+    every, at = np.ones((2, 2), bool), np.array([0, 5])
+    takes = Takes(cameras[0].track, (), every, np.zeros(2, np.int64), 0.0, False, ())
+    eyes, up = plain.landmarks["eyes"], np.array((0.0, 0.0, 1.0))
+    left = np.cross(up, plain.face)
+    camera = np.stack([eyes + 2.0 * plain.face, eyes + 2.0 * (0.5 * plain.face + 0.87 * left)])[:, at]
+
+    def with_board(way: NDArray[np.float64], scale: float = 1.0) -> Subject:
+        """With a board, 30 by 40 cm, 20 cm from the eyes in some direction."""
+        moved = np.zeros((plain.frames, 4, 4))
+        moved[:, :3, 0], moved[:, :3, 1], moved[:, :3, 2] = way, np.cross(up, way), up
+        moved[:, :3, 3], moved[:, 3, 3] = eyes + 0.2 * way, 1.0
+        moved[:, :3, :3] *= scale
+        board = box_of(moved, np.array((-0.01, -0.15, -0.25)), np.array((0.01, 0.15, 0.15)))
+        return replace(plain, in_hand=(board,))
+
+    np.testing.assert_allclose(face_covered(takes, with_board(plain.face), at, camera), (1.0, 0.0))
+    assert (face_covered(takes, with_board(-plain.face), at, camera) == 0.0).all()
+    nowhere = with_board(plain.face, 0.0)  # as what is not out yet
+    assert (face_covered(takes, nowhere, at, camera) == face_covered(takes, plain, at, camera)).all()
+    higher = with_board(plain.face).shifted(0.7)
+    assert (face_covered(takes, higher, at, camera + 0.7 * up)[0]) == 1.0
+
+
+def test_lines_of_sight_meet_boxes_as_points_along_them_do() -> None:
+    rng = np.random.default_rng(1)
+    frames, at = 6, np.arange(6)
+    turn = np.linalg.qr(rng.normal(size=(frames, 3, 3)))[0]
+    moved = np.zeros((frames, 4, 4))
+    moved[:, :3, :3], moved[:, :3, 3], moved[:, 3, 3] = 2.0 * turn, rng.uniform(-0.5, 0.5, (frames, 3)), 1.0
+    box = box_of(moved, np.array((-0.1, -0.2, -0.3)), np.array((0.3, 0.2, 0.1)))
+    camera, points = rng.uniform(-3, 3, (30, frames, 3)), rng.uniform(-3, 3, (frames, 4, 3))
+    met = box.before(at, camera, points, 0.0)
+    share = np.linspace(0, 1, 2001)[1:-1]
+    along = camera[:, :, None, None] + share[:, None] * (points[None] - camera[:, :, None])[..., None, :]
+    local = np.einsum("fij,pfksj->pfksi", box.axes, along - box.centre[:, None, None])
+    inside = (np.abs(local) < box.half).all(axis=-1).any(axis=-1)
+    assert (met == inside).mean() > 0.995
+    assert inside.mean() > 0.03
+    assert not (inside & ~met).any()
+
+
+def test_what_is_held_is_known_to_cameras() -> None:
+    text = 'storyboard "S"\ncharacter anna = woman\nscene s = park at day\nanna at bench\n'
+    act = stage_script(text + "(anna wave flag) / (static medium-close-up eye-level)  proposals 8\n", "s")
+    told = tell(act.state, act.line, act.filming, shot=act.line.shots[0]).proposals[0]
+    (flag,) = subject_of(act.line.shots[0], told, act.filming).in_hand
+    assert np.isfinite(flag.centre).any()
+    assert flag.half.max() > 0.3
+    plain = stage_script(text + "(anna clap) / (static medium)  proposals 8\n", "s")
+    told = tell(plain.state, plain.line, plain.filming, shot=plain.line.shots[0]).proposals[0]
+    assert subject_of(plain.line.shots[0], told, plain.filming).in_hand == ()

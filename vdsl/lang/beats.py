@@ -12,7 +12,7 @@ from dataclasses import replace
 
 from runtime.motion.manner import MANNERS
 
-from . import ast, words
+from . import ast, phrases, words
 from .catalog import CatalogLike
 from .definitions.types import DefinitionBase
 from .diagnostics import Report, listing, nearest
@@ -44,7 +44,8 @@ class BeatReader:
 
     def read(self, node: ast.BeatNode) -> Beat | None:
         character = self._who = self._character(node)
-        node, manner = self._manner(self._plain(node))
+        node, manner = self._manner(node)
+        node = replace(node, words=phrases.plain(node.words, self.characters, self._is_action))
         if len(node.words) < 2:
             self.report.error(
                 "VDS070",
@@ -57,7 +58,7 @@ class BeatReader:
         if action is None:
             return None
         definition = self.catalog.get("action", action)
-        rest = node.words[1 + used :]
+        rest = phrases.targets_alone(node.words[1 + used :], self._is_name)
         named = None if definition is None else self._targets(rest, definition)
         link = next((w.text for w in rest[1:] if w.text in words.PREPOSITIONS), "")
         if definition is None or named is None or character is None:
@@ -87,14 +88,6 @@ class BeatReader:
             return word.text
         unknown_character(word, self.characters, self.report)
         return None
-
-    def _plain(self, node: ast.BeatNode) -> ast.BeatNode:
-        """The beat without articles, and without words for whose something is."""
-        said = tuple(
-            word for n, word in enumerate(node.words)
-            if not n or word.text not in words.ARTICLES or word.text in self.characters
-        )  # fmt: skip
-        return replace(node, words=said)
 
     def _manner(self, node: ast.BeatNode) -> tuple[ast.BeatNode, str]:
         """The beat without its word for the manner, and that word."""
@@ -144,11 +137,17 @@ class BeatReader:
         forms = ("-".join((form, *others)) for form in (first, *words.plain_forms(first)))
         return next((self._actions[form] for form in forms if form in self._actions), None)
 
+    def _is_action(self, said: tuple[ast.Name, ...]) -> bool:
+        return bool(said) and self._called(said) is not None
+
+    def _is_name(self, word: ast.Name) -> bool:
+        """Whether a word is somebody's, or something's in the scene."""
+        known = self.scope is not None and bool(self.scope.look_up(word.parts))
+        return known or word.text in self.characters
+
     def _is_there(self, said: tuple[ast.Name, ...]) -> bool:
         """Whether the last of some words is somebody, or something in the scene."""
-        if not said or self.scope is None:
-            return False
-        return said[-1].text in self.characters or bool(self.scope.look_up(said[-1].parts))
+        return bool(said) and self.scope is not None and self._is_name(said[-1])
 
     def _wants_target(self, action: str) -> bool:
         """Whether nothing can be done by it alone."""
@@ -194,7 +193,7 @@ class BeatReader:
         fresh = True
         last: ast.Name | None = None
         for name in rest:
-            if name.text in words.PREPOSITIONS:
+            if name.text in words.PREPOSITIONS and not self._is_name(name):
                 fresh, last = True, name
             elif fresh:
                 groups.append([name])

@@ -60,7 +60,7 @@ def place(
         )
         return
     free = Target("free", (), "", line.span)
-    at = free if line.at is None else resolve(line.at, (), scene.scope, report)
+    at = free if line.at is None else resolve(line.at, (), scene.scope, report, any_of=True)
     facing = None
     if line.facing is not None:
         facing = someone_or_something(line.facing, scene, characters, report)
@@ -74,6 +74,8 @@ def place(
 def _check_seat(
     at: Target, line: ast.PlacementLine, scope: Scope, placed: dict[str, Placement], report: Report
 ) -> None:
+    if scope.may_have_seats_around(at) and not scope.has_seat(at):
+        return
     if at.kind in ("free", "character") or not scope.has_seat(at):
         written = line.at or line.posture or line.character
         seats = scope.seats()

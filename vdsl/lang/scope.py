@@ -7,6 +7,7 @@ depth are ambiguous. Names of nodes and of spots the set gives come before the s
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
@@ -61,7 +62,7 @@ class Scope:
 
         any_of: of several of the same kind, all in the scene, the first one is taken, with a warning
         """
-        found = self.look_up(name.parts)
+        found = self.look_up(name.parts) or (self._alike(name.text) if any_of else [])
         if len(found) == 1:
             return Target(found[0].kind, found[0].path, name.text, name.span)
         alike = {(f.node.prop, f.spot) if f.node.prop else f.path for f in found}
@@ -95,6 +96,14 @@ class Scope:
         """
         found = self.look_up((word,))
         return Target(found[0].kind, found[0].path, word, span, implied=True) if found else None
+
+    def _alike(self, word: str) -> list[Found]:
+        """What in the scene is no more than counted under a word (``desk_1``, ``desk_2``), or else what is of
+        that kind, whatever it is called."""
+        top = node_at(self.root, self.room) or self.root
+        nodes = [Found(path, node, False) for path, node in walk(top, self.room) if path != self.room]
+        counted = [f for f in nodes if re.fullmatch(rf"{re.escape(word)}_\d+", f.path[-1])]
+        return counted or [f for f in nodes if f.node.prop == word]
 
     def look_up(self, parts: tuple[str, ...]) -> list[Found]:
         """Everything the parts of a name may mean; one where it is plain, none where it is unknown."""
@@ -192,7 +201,22 @@ class Scope:
         if target.kind == "spot":
             return target.path[-1].startswith("seat")
         node = self.node_of(target)
-        return node is not None and any(s.startswith("seat") for s in (*node.spots, *self.prop_spots(node)))
+        return node is not None and self._is_seat(node)
+
+    def may_have_seats_around(self, target: Target) -> bool:
+        """Whether there are seats where a table or the like stands: which of them are at it, only the built
+        set can tell."""
+        node = node_at(self.root, target.path)
+        around = node_at(self.root, target.path[:-1])
+        if target.kind != "object" or node is None or around is None or not self._is_table(node):
+            return False
+        return any(self._is_seat(below) for child in around.children for _, below in walk(child))
+
+    def _is_seat(self, node: SetNode) -> bool:
+        return any(s.startswith("seat") for s in (*node.spots, *self.prop_spots(node)))
+
+    def _is_table(self, node: SetNode) -> bool:
+        return "top" in (*node.spots, *self.prop_spots(node))
 
     def sitting(self, target: Target, placed: Iterable[Placement]) -> Iterator[Placement]:
         """Those of the placed who sit at the thing a target is, or is a spot of."""
@@ -220,11 +244,7 @@ class Scope:
     def seats(self) -> tuple[str, ...]:
         """Names of what one can sit on, in the scene."""
         top = node_at(self.root, self.room) or self.root
-        return tuple(
-            node.name
-            for _, node in walk(top, self.room)
-            if any(s.startswith("seat") for s in (*node.spots, *self.prop_spots(node)))
-        )
+        return tuple(node.name for _, node in walk(top, self.room) if self._is_seat(node))
 
     def _unknown(self, name: Name, report: Report) -> None:
         top = node_at(self.root, self.room) or self.root

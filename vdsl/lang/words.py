@@ -183,15 +183,20 @@ STYLES = ("board", "clay", "ink")
 RIGS = ("cinema", "paper")
 PREPOSITIONS = (
     "to", "at", "with", "from", "in", "into", "on", "onto", "of", "out", "off", "through", "toward",
-    "towards", "for", "about", "against", "beside", "near", "by", "up", "down",
+    "towards", "for", "about", "against", "beside", "near", "by", "up", "down", "behind", "before", "under",
+    "over", "around", "across", "opposite", "past", "along", "inside", "after",
 )  # fmt: skip
 #: Words before a name that say nothing here: articles, and whose it is.
 ARTICLES = ("the", "a", "an", "some", "her", "his", "their", "its", "my", "your", "our")
 
 
 def plain_forms(verb: str) -> tuple[str, ...]:
-    """What a verb in the third person may be the form of: ``walks`` of ``walk``, ``pushes``, ``carries``."""
+    """What a verb in the third person may be the form of: ``walks`` of ``walk``, ``pushes``, ``carries``;
+    and one in ``ing``: ``crying``, ``waving``, ``sitting``."""
     forms = []
+    if verb.endswith("ing"):
+        stem = verb[:-3]
+        forms += [stem, f"{stem}e", *([stem[:-1]] if stem[-2:-1] == stem[-1:] else [])]
     if verb.endswith("ies"):
         forms.append(f"{verb[:-3]}y")
     if verb.endswith("es"):

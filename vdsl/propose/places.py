@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+import re
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -20,6 +21,8 @@ ARM = 0.75  # metres on the floor within which a hand reaches a thing
 TALKING = 0.88  # metres between two people face to face
 _EYES = 0.93  # of the standing height
 _BESIDE = 0.16  # metres between things on a table top
+_AT_TABLE, _FACES = 0.75, 0.5  # metres from a seat to what it is drawn up to; how far it faces it, a cosine
+_BY_SOMEBODY = 2.2  # metres to somebody at whose side, or opposite of whom, one sits
 
 Point = tuple[float, float, float]
 Place = tuple[float, ...]  # (x, y) or (x, y, z) on a floor
@@ -183,7 +186,26 @@ def _free_top(item: WorldObject, top: Spot, state: SceneState, stand: Spot | Non
 
 
 def seats(target: Target, world: World) -> list[Spot]:
-    """The seat spots a target has."""
+    """The seat spots a target has; at what has none, as a table, those of seats that are drawn up to it."""
+    found, item = own_seats(target, world), find_object(world, target)
+    if not found and item is not None and target.kind == "object" and item.kind not in ("room", "area"):
+        return _drawn_up(item, world)
+    return found
+
+
+def _counted(target: Target, world: World) -> list[Target]:
+    """The others of a number of things, where a line says ``desk`` and means ``desk_1`` or another one."""
+    numbered = re.compile(rf"{re.escape(target.written)}_\d+")
+    if target.kind != "object" or not numbered.fullmatch(target.path[-1]):
+        return []
+    paths = (item.path for item in world.objects if item.path[:-1] == target.path[:-1])
+    return [
+        replace(target, path=path) for path in paths if numbered.fullmatch(path[-1]) and path != target.path
+    ]
+
+
+def own_seats(target: Target, world: World) -> list[Spot]:
+    """The seat spots a target has itself."""
     item = find_object(world, target)
     if item is None:
         return []
@@ -194,15 +216,43 @@ def seats(target: Target, world: World) -> list[Spot]:
     return found
 
 
+def _drawn_up(table: WorldObject, world: World) -> list[Spot]:
+    """Seats from which one faces a thing, near by."""
+    low, high = table.low, table.high
+    out = []
+    for seat in (s for o in world.objects for s in o.spots if s.name.startswith("seat")):
+        x, y, z = seat.position
+        dx, dy = (max(low[k] - p, 0.0) - max(p - high[k], 0.0) for k, p in enumerate((x, y)))
+        away = math.hypot(dx, dy)
+        ahead = 0.0 if seat.facing is None else math.cos(seat.facing) * dx + math.sin(seat.facing) * dy
+        faces = seat.facing is None or ahead > _FACES * away
+        if away <= _AT_TABLE and faces and low[2] - 0.3 < z < high[2]:
+            out.append(seat)
+    return out
+
+
 def seat_of(target: Target | None, state: SceneState, who: str) -> Spot | None:
-    """A seat of the target nobody else sits on; without a target the nearest one of the whole scene."""
-    if target is not None:
+    """A seat of the target nobody else sits on, with somebody the one nearest to them; without a target the
+    nearest one of the whole scene."""
+    somebody = state.actors.get(target.path[0]) if target is not None and target.kind == "character" else None
+    if target is not None and somebody is None:
         found = seats(target, state.world)
     else:
         found = [s for o in state.world.objects for s in o.spots if s.name.startswith("seat")]
+    if somebody is not None:
+        away = {id(s): math.dist(s.position, somebody.seat or somebody.position) for s in found}
+        found = [s for s in found if away[id(s)] < _BY_SOMEBODY]
     taken = [a.seat for name, a in state.actors.items() if name != who and a.seat is not None]
-    free = [s for s in found if all(math.dist(s.position, t) > 0.35 for t in taken)]
-    if who in state.actors:
+
+    def free_of(found: list[Spot]) -> list[Spot]:
+        return [s for s in found if all(math.dist(s.position, t) > 0.35 for t in taken)]
+
+    free = free_of(found)
+    if not free and target is not None:
+        free = free_of([s for other in _counted(target, state.world) for s in seats(other, state.world)])
+    if somebody is not None:
+        free.sort(key=lambda s: away[id(s)])
+    elif who in state.actors:
         here = state.actors[who].position
         free.sort(key=lambda s: math.dist(s.position, here))
     return free[0] if free else None

@@ -20,7 +20,17 @@ from .bringing import with_brought
 from .cameras import find_object
 from .hindrance import report_no_seat, report_nothing_opens, report_unreachable
 from .opening import Way, part_point, part_to_move, stand_to_move, stands, ways_through
-from .places import ARM, Stop, approach, object_target, on_top_of, seat_of, spot_target, target_point
+from .places import (
+    ARM,
+    Stop,
+    approach,
+    object_target,
+    on_top_of,
+    own_seats,
+    seat_of,
+    spot_target,
+    target_point,
+)
 from .pouring import something_to_pour
 from .state import PERSON_RADIUS, SceneState
 
@@ -89,7 +99,7 @@ def _errand(
         beat, second = something_to_pour(beat, target, state)
     if clip.seat == "down":
         seat = seat_of(beat.target, state, beat.character)
-        if seat is not None and beat.target is None:
+        if seat is not None and (beat.target is None or seat not in own_seats(beat.target, state.world)):
             beat = replace(beat, target=spot_target(seat, state.world))
         if seat is None:
             report_no_seat(beat, state, report)

@@ -94,3 +94,52 @@ def test_of_several_alike_in_the_scene_the_first_is_taken_with_a_warning() -> No
     assert board.lines[0].beats[0].target is not None
     _, report = read("(anna walks to book)", "apartment.kitchen")  # those are in other rooms
     assert [d.code for d in report.errors] == ["VDS061"]
+
+
+@pytest.mark.parametrize(
+    ("line", "expected"),
+    [
+        ("(ben walks in)", ("enter", "middle", "", "")),
+        ("(anna storms out)", ("leave", "door", "", "")),
+        ("(anna sits back down)", ("sit", "", "", "")),
+        ("(anna starts to cry)", ("cry", "", "", "")),
+        ("(anna is crying)", ("cry", "", "", "")),
+        ("(anna keeps waving at ben)", ("wave", "ben", "", "")),
+        ("(anna throws the ball away)", ("throw-away", "ball", "", "")),
+        ("(ben picks the cup up again)", ("pick-up", "cup", "", "")),
+        ("(anna folds her arms)", ("cross-arms", "", "", "")),
+        ("(anna kisses ben on the cheek)", ("kiss", "ben", "", "")),
+        ("(anna kisses him)", ("kiss", "ben", "", "")),
+        ("(ben hugs her)", ("hug", "anna", "", "")),
+        ("(ben takes her hand)", ("hold-hands", "anna", "", "")),
+        ("(ben runs past)", ("run", "", "", "")),
+        ("(anna stands in front of the fridge)", ("walk", "fridge", "", "")),
+        ("(anna walks up to ben)", ("approach", "ben", "", "")),
+        ("(ben hides behind the sofa)", ("hide", "sofa", "", "")),
+        ("(ben sits across from anna)", ("sit", "anna", "", "")),
+        ("(ben orders a pizza)", ("order", "", "", "")),
+    ],
+)
+def test_what_stands_around_a_verb_says_what_it_is_or_nothing(
+    line: str, expected: tuple[str, str, str, str]
+) -> None:
+    assert told(beat(line)) == expected
+
+
+def test_they_are_both_or_do_it_to_each_other() -> None:
+    board, _ = read("(they laugh)")
+    assert board is not None
+    assert [(b.character, b.action) for b in board.lines[0].beats] == [("anna", "laugh"), ("ben", "laugh")]
+    assert told(beat("(they shake hands)")) == ("shake-hands", "ben", "", "")
+    board, report = read("(they laugh)\ncharacter carl = man\ncarl at door\n(they laugh)\n(he waves)")
+    assert board is None
+    assert [d.code for d in report.errors] == ["VDS065", "VDS065"]
+    assert report.errors[1].help == "say who by name, of anna, ben and carl"
+
+
+def test_what_is_numbered_is_found_by_its_word_and_a_kind_by_its_own() -> None:
+    board, report = read("(anna walks to desk)\n(ben looks at the printer)", "office")
+    assert board is not None
+    assert board.lines[0].beats[0].target is not None
+    assert board.lines[0].beats[0].target.path[-1] == "desk_1"
+    assert [(d.code, d.severity) for d in report.diagnostics] == [("VDS061", "warning")]

@@ -5,13 +5,18 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from ..lang.ir import Beat, Shot, StoryLine
+from ..lang.phrases import BOTH
 
 if TYPE_CHECKING:
     from .types import BuiltShot
 
 
 def beat_words(beat: Beat) -> str:
-    """``anna give cup to ben``; without a target that goes without saying."""
+    """What somebody does, as the script says it: ``anna gives ben the cup``; of what no script says, ``anna
+    give cup to ben``, without a target that goes without saying."""
+    said = " ".join(beat.span.text.strip().removeprefix("(").removesuffix(")").split())
+    if said.split(" ")[0] in (beat.character, *BOTH):
+        return said
     words = [beat.character, beat.action]
     if beat.target is not None and not beat.target.implied:
         words.append(beat.target.written)
@@ -22,7 +27,7 @@ def beat_words(beat: Beat) -> str:
 
 def line_words(line: StoryLine, scene: str) -> str:
     """What happens, in the script's own words; the scene's name for an establishing shot."""
-    return " + ".join(beat_words(b) for b in line.beats) or f"{scene}, establishing"
+    return " + ".join(dict.fromkeys(beat_words(b) for b in line.beats)) or f"{scene}, establishing"
 
 
 #: What sizes are called in the margin of a storyboard.

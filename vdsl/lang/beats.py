@@ -38,6 +38,7 @@ class BeatReader:
         self.scope = scope
         self.report = report
         self.bring: Callable[[str, Span, str], Target | None] | None = None
+        self.about: tuple[str, ...] = characters  # of them, who is in the scene
         self._who: str | None = None
         self._actions = {words.fold(word): name for word, name in catalog.synonyms("action").items()}
         self._actions |= {words.fold(name): name for name in catalog.names("action")}
@@ -45,7 +46,7 @@ class BeatReader:
     def read(self, node: ast.BeatNode) -> Beat | None:
         character = self._who = self._character(node)
         node, manner = self._manner(node)
-        node = replace(node, words=phrases.plain(node.words, self.characters, self._is_action))
+        node = replace(node, words=phrases.plain(node.words, self.characters, self._other(), self._is_action))
         if len(node.words) < 2:
             self.report.error(
                 "VDS070",
@@ -66,6 +67,8 @@ class BeatReader:
         if not named and self.scope is not None:
             unsaid = (self.scope.first(word, node.span) for word in getattr(definition, "otherwise", ()))
             named = [target for target in unsaid if target is not None][:1]
+        if not named and self._other() and _is_done_to_somebody(definition):
+            named = [Target("character", (self._other(),), self._other(), node.span, implied=True)]
         only_second = _is_second(definition, named)
         if not only_second and not self._fits(node, action, definition, named):
             return None
@@ -88,6 +91,11 @@ class BeatReader:
             return word.text
         unknown_character(word, self.characters, self.report)
         return None
+
+    def _other(self) -> str:
+        """The only one who is about besides who acts; "" where there is nobody else, or more."""
+        others = [name for name in self.about if name != self._who]
+        return others[0] if len(others) == 1 else ""
 
     def _manner(self, node: ast.BeatNode) -> tuple[ast.BeatNode, str]:
         """The beat without its word for the manner, and that word."""
@@ -318,6 +326,8 @@ def unknown_character(word: ast.Name, characters: tuple[str, ...], report: Repor
     meant = nearest(word.text, characters)
     if characters:
         help = f"characters are {listing(characters, last='and')}"
+        if word.text in phrases.PRONOUNS:
+            help = f"say who by name, of {listing(characters, last='and')}"
     else:
         help = f"add a line `character {word.text} = woman` above"
     report.error(
@@ -339,6 +349,13 @@ def _works_with(definition: DefinitionBase, rest: tuple[ast.Name, ...]) -> bool:
         and rest[:1] != ()
         and rest[0].text == "with"
     )
+
+
+def _is_done_to_somebody(definition: DefinitionBase) -> bool:
+    """Whether an action is nothing without somebody it is done to, and one will do: ``hug``."""
+    wants, second = (getattr(definition, name, "none") for name in ("target", "second"))
+    kinds = tuple(getattr(definition, "target_kinds", ()))
+    return wants == "required" and second != "required" and kinds == ("character",)
 
 
 def _is_second(definition: DefinitionBase, named: list[Target]) -> bool:

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from pathlib import PurePath
 
-from . import ast
+from . import ast, phrases
 from .beats import BeatReader, unknown_character
 from .bringing import bring, bring_named
 from .catalog import CatalogLike
@@ -299,9 +299,9 @@ class _Checker:
         names = tuple(self.characters)
         if stage.reader is None or stage.reader.characters != names:
             stage.reader = BeatReader(self.catalog, names, stage.scope, self.report)
+            stage.reader.about = tuple(name for name in names if name in stage.members)
             stage.reader.bring = lambda word, span, who: bring_named(word, span, who, stage, self.catalog)
-        beats = [self._beat(stage.reader, each, stage) for each in node.beats]
-        done = tuple(beat for beat in beats if beat is not None)
+        done = tuple(beat for each in node.beats for beat in self._beats(stage.reader, each, stage))
         self._together(done)
         for beat in done:
             stage.hands.act(beat)
@@ -314,6 +314,20 @@ class _Checker:
         )
         shots = read_shots(node, context, self.defaults, self.ids, self.report)
         self.lines.append(StoryLine(stage.index, done, shots, self.joins.give(), node.span))
+
+    def _beats(self, reader: BeatReader, node: ast.BeatNode, stage: SceneBeingRead) -> tuple[Beat, ...]:
+        """What a beat says: one, or where it says ``they`` of two, one each, if it is nothing they do to each
+        other."""
+        both = phrases.both(node, reader.about, tuple(self.characters))
+        first = self._beat(reader, both[0], stage)
+        if (
+            first is None
+            or len(both) == 1
+            or (first.target is not None and first.target.path == both[1].words[0].parts)
+        ):
+            return () if first is None else (first,)
+        second = self._beat(reader, both[1], stage)
+        return (first,) if second is None else (first, second)
 
     def _beat(self, reader: BeatReader, node: ast.BeatNode, stage: SceneBeingRead) -> Beat | None:
         for word in node.words:

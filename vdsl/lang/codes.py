@@ -423,8 +423,9 @@ CODES: dict[str, Code] = {
     ),
     "VDS069": Code(
         "no seat here",
-        "One sits on what has a seat, one person on each: a chair, a sofa, a bench, or a spot called seat.",
-        "carl at counter sitting",
+        "One sits on what has a seat, one person on each: a chair, a sofa, a bench, or a spot called seat; or at a "
+        "table to which seats are drawn up.",
+        "carl at door sitting",
         "carl at chair_1 sitting",
     ),
     # -- what happens ------------------------------------------------------------------------

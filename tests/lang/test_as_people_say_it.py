@@ -117,6 +117,10 @@ def test_of_several_alike_in_the_scene_the_first_is_taken_with_a_warning() -> No
         ("(anna walks up to ben)", ("approach", "ben", "", "")),
         ("(ben hides behind the sofa)", ("hide", "sofa", "", "")),
         ("(ben sits across from anna)", ("sit", "anna", "", "")),
+        ("(anna drops the cup on the floor)", ("drop", "cup", "", "")),
+        ("(ben drinks a glass of water)", ("drink", "glass", "", "")),
+        ("(anna slumps on the sofa)", ("sit", "sofa", "", "")),
+        ("(anna points at the sky)", ("point", "", "", "")),
         ("(ben orders a pizza)", ("order", "", "", "")),
     ],
 )
@@ -124,6 +128,23 @@ def test_what_stands_around_a_verb_says_what_it_is_or_nothing(
     line: str, expected: tuple[str, str, str, str]
 ) -> None:
     assert told(beat(line)) == expected
+
+
+def test_pronouns_are_who_and_what_was_spoken_of_last() -> None:
+    lines = "(carl waves at anna)\n(ben hugs her)\n(anna kisses him)\n(ben takes anna by the hand)"
+    lines += "\n(anna blows carl a kiss)\n(ben picks up the cup)\n(ben gives it to carl)"
+    lines += "\n(anna puts her arms around him)"
+    board, report = read(f"character carl = man\ncarl at door\n{lines}")
+    assert board is not None, [d.label for d in report.errors]
+    assert [told(line.beats[0])[:3] for line in board.lines] == [
+        ("wave", "anna", ""), ("hug", "anna", ""), ("kiss", "ben", ""), ("hold-hands", "anna", ""),
+        ("blow-kiss", "carl", ""), ("pick-up", "cup", ""), ("give", "cup", "carl"), ("hug", "carl", ""),
+    ]  # fmt: skip
+
+
+def test_two_things_in_a_line_are_told() -> None:
+    _, report = read("(anna walks to the window and looks out)")
+    assert report.errors[0].help == "a line says one thing: what comes after `and` is a line of its own"
 
 
 def test_they_are_both_or_do_it_to_each_other() -> None:

@@ -40,13 +40,18 @@ class BeatReader:
         self.bring: Callable[[str, Span, str], Target | None] | None = None
         self.about: tuple[str, ...] = characters  # of them, who is in the scene
         self._who: str | None = None
+        self._mentioned: tuple[str, ...] = ()  # people, who was spoken of last first
+        self._it = ""  # the thing that was spoken of last
         self._actions = {words.fold(word): name for word, name in catalog.synonyms("action").items()}
         self._actions |= {words.fold(name): name for name in catalog.names("action")}
 
     def read(self, node: ast.BeatNode) -> Beat | None:
         character = self._who = self._character(node)
         node, manner = self._manner(node)
-        node = replace(node, words=phrases.plain(node.words, self.characters, self._other(), self._is_action))
+        spoken_of, possessed = self._spoken_of(), {"her", "his", "their"} & {w.text for w in node.words}
+        known = phrases.Known(self.characters, spoken_of, self._it, self._is_action)
+        node = replace(node, words=phrases.plain(node.words, known))
+        self._mention(node.words)
         if len(node.words) < 2:
             self.report.error(
                 "VDS070",
@@ -67,8 +72,10 @@ class BeatReader:
         if not named and self.scope is not None:
             unsaid = (self.scope.first(word, node.span) for word in getattr(definition, "otherwise", ()))
             named = [target for target in unsaid if target is not None][:1]
-        if not named and self._other() and _is_done_to_somebody(definition):
-            named = [Target("character", (self._other(),), self._other(), node.span, implied=True)]
+        whom = spoken_of if possessed else self._other()
+        if not named and whom and _is_done_to_somebody(definition):
+            named = [Target("character", (whom,), whom, node.span, implied=True)]
+        self._it = next((t.written for t in named if t.kind == "object" and not t.implied), self._it)
         only_second = _is_second(definition, named)
         if not only_second and not self._fits(node, action, definition, named):
             return None
@@ -91,6 +98,15 @@ class BeatReader:
             return word.text
         unknown_character(word, self.characters, self.report)
         return None
+
+    def _mention(self, said: tuple[ast.Name, ...]) -> None:
+        now = [word.text for word in reversed(said) if word.text in self.characters]
+        self._mentioned = tuple(dict.fromkeys((*now, *self._mentioned)))
+
+    def _spoken_of(self) -> str:
+        """Whom ``him`` means: the only other one who is about, or who was spoken of last; "" for nobody."""
+        last = next((name for name in self._mentioned if name != self._who and name in self.about), "")
+        return self._other() or last
 
     def _other(self) -> str:
         """The only one who is about besides who acts; "" where there is nobody else, or more."""
@@ -231,6 +247,8 @@ class BeatReader:
         if len(group) > 1:
             names = " ".join(name.text for name in group)
             help = f"a second target follows a word like `to`: `{group[0].text} to {group[1].text}`"
+            if any(name.text == "and" for name in group):
+                help = "a line says one thing: what comes after `and` is a line of its own"
             self.report.error("VDS073", group[1].span, label=f"`{names}` is not one name", help=help)
             return None
         return self._resolve(group[0])

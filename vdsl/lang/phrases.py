@@ -8,13 +8,13 @@ Guarantees that no word is touched that is somebody's name, and that what is lef
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 from . import ast
 from .words import ARTICLES, PREPOSITIONS, plain_forms
 
 #: Before a verb, by itself or with ``to``, they say that it begins or goes on.
-AUXILIARIES = ("is", "are", "start", "begin", "try", "continue", "keep", "proceed")
+AUXILIARIES = ("is", "are", "start", "begin", "try", "continue", "keep", "proceed", "pretend")
 #: After a verb, or at the end: a direction, where no name follows.
 PARTICLES = (
     "in",
@@ -50,8 +50,22 @@ _LONGEST = max(len(words) for words in _JOINED)
 PRONOUNS = ("he", "she", "they", "it", "both", "everyone", "everybody", "all", "we", "i", "you")
 #: But for these, where two are about: they do it both, or to each other.
 BOTH = ("they", "both")
-#: Whom it is done to, where that is the only other one about.
+#: Whom it is done to: the one who was spoken of last.
 _OBJECTS = ("him", "her", "them")
+#: What is about everywhere, and is named to say where: an action that needs no place needs none of these.
+_EVERYWHERE = (
+    "floor",
+    "ground",
+    "grass",
+    "sky",
+    "air",
+    "ceiling",
+    "room",
+    "home",
+    "street",
+    "sand",
+    "carpet",
+)
 #: Parts of a body: an action knows which it needs.
 _BODY = {
     "head", "face", "eyes", "eye", "ears", "nose", "mouth", "lips", "cheek", "cheeks", "chin", "forehead",
@@ -62,19 +76,27 @@ _BODY = {
 Words = tuple[ast.Name, ...]
 
 
-def plain(said: Words, named: Sequence[str], other: str, is_action: Callable[[Words], bool]) -> Words:
-    """The words of a beat without those that say nothing, with a verb's particle right after it.
+@dataclass(frozen=True)
+class Known:
+    """What a line's words may stand for.
 
-    named: people of the storyboard; other: the only other one who is about, or ""; is_action: whether all of
-    some words name an action
+    named: people of the storyboard; them, it: who besides the one who acts, and what, was spoken of last, or
+    ""; is_action: whether all of some words name an action
     """
-    character, rest = said[:1], _without(_named(said[1:], named, other), named)
-    rest = _one_each(_without_auxiliary(rest, is_action), is_action)
+
+    named: Sequence[str]
+    them: str
+    it: str
+    is_action: Callable[[Words], bool]
+
+
+def plain(said: Words, known: Known) -> Words:
+    """The words of a beat without those that say nothing, with all words of a verb side by side."""
+    character, rest = said[:1], _without(_with_names(said[1:], known), known.named)
+    rest = _one_each(_without_auxiliary(rest, known.is_action), known.is_action)
     while len(rest) > 1 and rest[-1].text in ADVERBS and rest[-1].text not in PARTICLES:
         rest = rest[:-1]
-    if len(rest) > 2 and rest[-1].text in PARTICLES and is_action((rest[0], rest[-1])):
-        rest = (rest[0], rest[-1], *rest[1:-1])
-    return character + rest
+    return character + _verb_first(rest, known)
 
 
 def both(node: ast.BeatNode, about: Sequence[str], named: Sequence[str]) -> tuple[ast.BeatNode, ...]:
@@ -86,27 +108,43 @@ def both(node: ast.BeatNode, about: Sequence[str], named: Sequence[str]) -> tupl
 
 
 def targets_alone(rest: Words, is_name: Callable[[ast.Name], bool]) -> Words:
-    """What follows an action without adverbs, without parts of bodies, as in ``on the cheek``, and without a
-    particle that no name follows."""
+    """What follows an action without adverbs, without parts of bodies and what is everywhere, as in ``on the
+    cheek`` and ``on the floor``, without what a thing is full of, and without a particle at its end."""
     kept: Words = ()
     for word in rest:
-        if is_name(word) or word.text not in (*ADVERBS, *_BODY):
+        of = len(kept) > 1 and kept[-1].text == "of"  # `a glass of water` is a glass
+        if is_name(word) or not (of or word.text in (*ADVERBS, *_BODY, *_EVERYWHERE)):
             kept = (*kept, word)
-        elif word.text in _BODY and kept and kept[-1].text in PREPOSITIONS:
+        elif word.text not in ADVERBS and kept and kept[-1].text in PREPOSITIONS:
             kept = kept[:-1]
     while kept and kept[-1].text in PARTICLES and not is_name(kept[-1]):
         kept = kept[:-1]
     return kept
 
 
-def _named(said: Words, named: Sequence[str], other: str) -> Words:
-    """With a name for ``him`` and ``them``, and for ``her`` where it is not hers that something is."""
+def _with_names(said: Words, known: Known) -> Words:
+    """With names for ``him``, ``them`` and ``it``, and for ``her`` where it is not hers that something is."""
     out = []
     for n, word in enumerate(said):
-        ends = n + 1 == len(said) or said[n + 1].text in (*PREPOSITIONS, *PARTICLES)
-        object_ = word.text in _OBJECTS and word.text not in named and (word.text != "her" or ends)
-        out.append(ast.Name((other,), word.span) if object_ and other else word)
+        ends = n + 1 == len(said) or said[n + 1].text in (*PREPOSITIONS, *PARTICLES, *ARTICLES)
+        meant = known.them if word.text in _OBJECTS and (word.text != "her" or ends) else ""
+        meant = known.it if word.text == "it" else meant
+        out.append(ast.Name((meant,), word.span) if meant and word.text not in known.named else word)
     return tuple(out)
+
+
+def _verb_first(rest: Words, known: Known) -> Words:
+    """``throw away the phone`` for ``throw the phone away``, ``blow kiss ben`` for ``blow ben a kiss``,
+    ``take hand ben`` for ``take ben by the hand``."""
+    if len(rest) < 3 or known.is_action(rest[:2]):
+        return rest
+    verb, first, *others, last = rest
+    if last.text in PARTICLES and known.is_action((verb, last)):
+        return (verb, last, first, *others)
+    by = not others or (len(others) == 1 and others[0].text in PREPOSITIONS)
+    if first.text in known.named and by and known.is_action((verb, last)):
+        return (verb, last, first)
+    return rest
 
 
 def _without(said: Words, named: Sequence[str]) -> Words:

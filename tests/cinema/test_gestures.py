@@ -197,3 +197,17 @@ def test_what_is_held_is_known_to_cameras() -> None:
     plain = stage_script(text + "(anna clap) / (static medium)  proposals 8\n", "s")
     told = tell(plain.state, plain.line, plain.filming, shot=plain.line.shots[0]).proposals[0]
     assert subject_of(plain.line.shots[0], told, plain.filming).in_hand == ()
+
+
+def test_a_tilt_that_ends_on_a_lap_has_a_fault() -> None:
+    """Knees are somebody, and yet nothing to end on; hands that do something are."""
+    _, cameras = filmed("(anna nod)", "tilt-down medium eye-level")
+    empty = np.array([c.measures["empty"] for c in cameras])
+    faulty = np.array([bool(flaws_by_measure(c.measures)["empty"]) for c in cameras])
+    assert faulty.any()
+    assert not faulty.all()
+    assert (empty[faulty] >= 0.3).all()
+    ends = np.array([c.params["ending"] for c in cameras])
+    assert "off" in set(ends[faulty])
+    best = max(cameras, key=lambda c: c.measures["geometry"])
+    assert best.measures["empty"] < 0.25

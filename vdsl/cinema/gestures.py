@@ -42,7 +42,7 @@ def hands_missed(takes: Takes, subject: Subject, at: NDArray[np.int64], camera: 
         return np.zeros(len(camera))
     collar = subject.landmarks["collar"][at]
     trunk = subject.landmarks["waist"][at] - collar
-    works, seen = _at_work(subject, at), []
+    works, seen = at_work(subject, at), []
     for side, name in enumerate(("hand_l", "hand_r")):
         hand = subject.landmarks[name][at]
         before = _apart(camera, 0.93 * (hand[None] - camera), collar[None], trunk[None])
@@ -62,7 +62,7 @@ def act_missed(subject: Subject, at: NDArray[np.int64], seen: Bools) -> Array:
     """
     if subject.kind != "person":
         return np.zeros(len(seen))
-    works, body = _at_work(subject, at), subject.landmarks["pocket"][at]
+    works, body = at_work(subject, at), subject.landmarks["pocket"][at]
     hands = np.stack([subject.landmarks[name][at] - body for name in ("hand_l", "hand_r")], axis=1)
     steps = length(np.diff(hands, axis=0)) * (works[1:] | works[:-1])
     steps = steps.max(axis=1, initial=0.0)
@@ -84,7 +84,7 @@ def gesture_lost(
     """
     if subject.kind != "person":
         return np.zeros(len(picture.xy))
-    works = _at_work(subject, at)
+    works = at_work(subject, at)
     # metres across the picture at the body's distance
     depth = np.maximum(picture.depth[:, :, picture.names.index("pocket")], 0.05)
     metres = depth[..., None] * np.array(takes.track.sensor) / takes.track.focal[:, at, None]
@@ -98,7 +98,7 @@ def gesture_lost(
     return np.where(_shows_hands(takes) & asked.any(axis=1), 1.0 - mean_of(clear, asked), 0.0)
 
 
-def _at_work(subject: Subject, at: NDArray[np.int64]) -> Bools:
+def at_work(subject: Subject, at: NDArray[np.int64]) -> Bools:
     """Whether the left hand and the right one are higher than hands that hang, bool [F, 2]."""
     collar = subject.landmarks["collar"][at]
     trunk = subject.landmarks["waist"][at] - collar

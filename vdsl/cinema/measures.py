@@ -19,7 +19,7 @@ from . import space
 from .company import company_cut, company_shown
 from .composition import framing, size_error
 from .framing import Array
-from .gestures import act_missed, face_covered, gesture_lost, hands_missed
+from .gestures import act_missed, at_work, face_covered, gesture_lost, hands_missed
 from .score import geometry_score as geometry_score
 from .sight import backdrop_gaps, clear_lines, clear_of_people, hidden_walls
 from .subject import SIGHT, Subject
@@ -46,7 +46,8 @@ MEASURES = (
     "thirds_error",  # distance of the eyes from the upper third (from above: the middle one), of its height
     "interest",  # share of the other points that matter (thing in hand, partner) in the frame and not hidden
     "empty",  # share of the time in which neither any of the subject nor any of those points is in the frame,
-    # and more by ENDS_EMPTY where the last frame is such a one
+    # and more by ENDS_EMPTY where the last frame is such a one, or shows of a person neither face nor hands
+    # that do something
     "walk_missed",  # share of the way the subject goes on which nothing of it is seen; 0 for a step or two
     "act_missed",  # share of the way hands go at work on which nothing of the subject is seen
     "hands_missed",  # share of the time hands are at work in which neither is seen; 0 for close-ups
@@ -127,7 +128,9 @@ def measure(takes: Takes, subject: Subject, world: World, fps: float) -> Measure
     shown = _shown(takes, world, at, camera, axes, hidden, others)
     values["interest"] = _interest(takes, shown)
     somebody = in_sight.any(axis=-1) | inside[:, :, names.index("eyes")] | shown.any(axis=-1)
-    values["empty"] = np.minimum(1.0 - somebody.mean(axis=1) + ENDS_EMPTY * ~somebody[:, -1], 1.0)
+    at_end = _worth_ending_on(subject, at, in_sight[:, -1]) | inside[:, -1, names.index("eyes")]
+    ends = at_end | shown[:, -1].any(axis=-1)
+    values["empty"] = np.minimum(1.0 - somebody.mean(axis=1) + ENDS_EMPTY * ~ends, 1.0)
     values["company_cut"] = company_cut(takes, subject, at, camera, axes, picture, unhidden)
     looks = _ALL_OVER if subject.kind == "place" else _ASIDE
     values["foreground"] = _foreground(takes, world, at, camera, axes, picture, hidden, looks)
@@ -151,6 +154,18 @@ def measure(takes: Takes, subject: Subject, world: World, fps: float) -> Measure
     people = space.to_people(camera, others)
     values["clearance"] = np.minimum(np.minimum(room.object, room.shown), people)
     return Measured(values, hidden, room.shown, people)
+
+
+def _worth_ending_on(subject: Subject, at: NDArray[np.int64], seen: Bools) -> Bools:
+    """Which takes [P] show of a subject what one may end on: of a person the face, or hands at work.
+
+    seen: bool [P, K] of the points of SIGHT, in the last frame
+    """
+    if subject.kind != "person":
+        return np.asarray(seen.any(axis=-1))
+    face = seen[:, [SIGHT.index(name) for name in ("eyes", "chin")]].any(axis=-1)
+    hands = seen[:, [SIGHT.index(name) for name in ("hand_l", "hand_r")]] & at_work(subject, at[-1:])
+    return np.asarray(face | hands.any(axis=-1))
 
 
 def _missed(waist: Array, seen: Bools) -> Array:

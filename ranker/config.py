@@ -12,9 +12,8 @@ from typing import Any
 from .errors import RankerError
 
 BACKBONES = ("resnet50", "resnet18")
-#: Of :attr:`ModelConfig.liking`, where it is taught how well good shots are liked. The best of many are found
-#: by more, and more that have a fault with them; the good among the spoilt by less.
-LIKING = 1.5
+#: Of :attr:`ModelConfig.liking`, where it is taught how well good shots are liked.
+LIKING = 1.0
 
 
 @dataclass(frozen=True)
@@ -30,7 +29,8 @@ class ModelConfig:
     first_fault, faults: which of the measures, one after the other, say by log odds that a shot has a fault
     guides: width of what is made of guides, 0 for none; meant: whether the frames of these that are meant to
         show the subject are found, and looked at by themselves
-    liking: what log odds of being liked well count beside those of being good
+    liking: what log odds of being liked best count, by which shots are put in order; 0 where that is not
+        taught, and those of being good are gone by
     """
 
     movements: tuple[str, ...]

@@ -267,11 +267,16 @@ class ShotRanker(nn.Module):
         return [fuse(marked, times)] if self.config.marks else []
 
     def margin(self, out: Output) -> Tensor:
-        """What shots are put in order by, [B]: log odds of being good, and how much greater than those of an
-        average good one the odds are that they are liked well, by the steps above the mean."""
-        upper = [k for k, step in enumerate(STEPS) if step > 0]
-        greater = out.liked[:, upper] - out.liked.new_tensor([STEP_ODDS[k] for k in upper])
-        return out.logit + self.config.liking * greater.mean(1)
+        """What shots are put in order by, [B]: how much greater than those of an average good one the odds
+        are that they are among the best liked, above the highest step; where liking is not taught, log odds
+        of being good.
+
+        Who looks for the best of many asks for this alone: that one is rather good than bad is said by it
+        too, and sums of the two found fewer of the best.
+        """
+        if not self.config.liking:
+            return out.logit
+        return self.config.liking * (out.liked[:, -1] - STEP_ODDS[-1])
 
     def _seen(self, moved: Tensor | None) -> Tensor | None:
         """What is made of the motion of shots; zeros where it is not known."""

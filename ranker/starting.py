@@ -12,6 +12,7 @@ from pathlib import Path
 import torch
 from torch import Tensor
 
+from .composed import WINDOWED
 from .config import ModelConfig
 from .errors import RankerError
 from .model import ShotRanker
@@ -40,11 +41,15 @@ def take_over(
             f"{folder}: are weights of a {others.backbone}, and no {words.backbone} can start from them"
         )
     told: list[str] = list(card.data.get("hints") or ())
-    if words.meant and not others.meant:  # what is read of these frames comes last, and says nothing at first
-        for name in _READ:
-            if name in other and name in ours:
-                other[name] = _widened(other[name], ours[name])
-                ours[name][:, other[name].isnan().any(0)] = 0.0
+    if words.meant != others.meant and model.guided is not None:
+        more = WINDOWED * model.guided.frame  # what is read of these frames comes last
+        for name in (name for name in _READ if name in other and name in ours):
+            given, wide = other[name], ours[name].shape[1]
+            if words.meant and given.shape[1] + more == wide:
+                other[name] = _widened(given, wide)
+                ours[name][:, given.shape[1] :] = 0.0  # so that it says nothing at first
+            elif others.meant and given.shape[1] == wide + more:
+                other[name] = given[:, :wide]
     if told != list(hints) and len(told) == others.measures and len(hints) == words.measures and told:
         other = {k: _in_order(k, v, ours.get(k), (told, others), (hints, words)) for k, v in other.items()}
     fit = {k: v for k, v in other.items() if k in ours and v.shape == ours[k].shape}
@@ -55,9 +60,9 @@ def take_over(
     return card.sha256, fit
 
 
-def _widened(value: Tensor, ours: Tensor) -> Tensor:
-    """A matrix with as many columns as ours, NaN in those that are new."""
-    out = value.new_full((value.shape[0], ours.shape[1]), torch.nan)
+def _widened(value: Tensor, columns: int) -> Tensor:
+    """A matrix with so many columns, NaN in those that are new."""
+    out = value.new_full((value.shape[0], columns), torch.nan)
     out[:, : value.shape[1]] = value
     return out
 

@@ -95,7 +95,7 @@ def train(
         faults=data.faults.stop - data.faults.start if config.hint_weight else 0,
         marks=len(data.frame_hints[0]) if config.hint_weight and data.hints[0] else 0,
         guides=config.guides if data.guided is not None else 0,
-        meant=bool(config.guides and data.guided is not None and np.isfinite(data.meant).any()),
+        meant=_tells_meant(config, data),
         liking=LIKING if config.order_weight and np.isfinite(data.liked).any() else 0.0,
     )
     if not shape.guides and any(phase.size == 0 for phase in config.phases):
@@ -194,6 +194,12 @@ def train(
     about = {"training": training, "data": data.about(), "measured": measured}
     save_weights(out / "weights", model, **about, ranges=ranges)
     return measured
+
+
+def _tells_meant(config: TrainConfig, data: Dataset) -> bool:
+    """Whether a network learns which frames are meant to show the subject."""
+    taught = config.hint_weight > 0 and bool(data.hints[0]) and bool(np.isfinite(data.meant).any())
+    return taught and config.guides > 0 and data.guided is not None
 
 
 def settle(model: ShotRanker, data: Dataset, clips: NDArray[np.int64], seed: int = 0) -> None:

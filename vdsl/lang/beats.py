@@ -7,7 +7,7 @@ left are one or two targets, the second after a word like ``to`` or ``with``. A 
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 
 from runtime.motion.manner import MANNERS
@@ -41,15 +41,17 @@ class BeatReader:
         self.about: tuple[str, ...] = characters  # of them, who is in the scene
         self._who: str | None = None
         self._mentioned: tuple[str, ...] = ()  # people, who was spoken of last first
-        self._it = ""  # the thing that was spoken of last
+        self._it: tuple[str, ...] = ()  # the name of the thing that was spoken of last
+        self.bodies: Mapping[str, str] = {}  # by character: feminine or masculine, where that is known
         self._actions = {words.fold(word): name for word, name in catalog.synonyms("action").items()}
         self._actions |= {words.fold(name): name for name in catalog.names("action")}
 
     def read(self, node: ast.BeatNode) -> Beat | None:
         character = self._who = self._character(node)
         node, manner = self._manner(node)
-        spoken_of, possessed = self._spoken_of(), {"her", "his", "their"} & {w.text for w in node.words}
-        known = phrases.Known(self.characters, spoken_of, self._it, self._is_action)
+        possessed = next((w.text for w in node.words if w.text in ("her", "his", "their")), "")
+        spoken_of = self._spoken_of(possessed)
+        known = phrases.Known(self.characters, self._spoken_of, self._it, self._is_action)
         node = replace(node, words=phrases.plain(node.words, known))
         self._mention(node.words)
         if len(node.words) < 2:
@@ -75,7 +77,8 @@ class BeatReader:
         whom = spoken_of if possessed else self._other()
         if not named and whom and _is_done_to_somebody(definition):
             named = [Target("character", (whom,), whom, node.span, implied=True)]
-        self._it = next((t.written for t in named if t.kind == "object" and not t.implied), self._it)
+        things = (t for t in named if t.kind == "object" and not t.implied)
+        self._it = next((tuple(t.written.split(".")) for t in things), self._it)
         only_second = _is_second(definition, named)
         if not only_second and not self._fits(node, action, definition, named):
             return None
@@ -103,10 +106,14 @@ class BeatReader:
         now = [word.text for word in reversed(said) if word.text in self.characters]
         self._mentioned = tuple(dict.fromkeys((*now, *self._mentioned)))
 
-    def _spoken_of(self) -> str:
-        """Whom ``him`` means: the only other one who is about, or who was spoken of last; "" for nobody."""
-        last = next((name for name in self._mentioned if name != self._who and name in self.about), "")
-        return self._other() or last
+    def _spoken_of(self, pronoun: str = "") -> str:
+        """Whom ``him`` means: of those whom it may mean the only one who is about besides who acts, or who
+        was spoken of last; "" for nobody."""
+        body = {"her": "feminine", "him": "masculine", "his": "masculine"}.get(pronoun, "")
+        others = [name for name in self.about if name != self._who]
+        may = [name for name in others if not body or self.bodies.get(name, body) == body]
+        last = next((name for name in self._mentioned if name in may), "")
+        return may[0] if len(may) == 1 else last or ("" if len(others) != 1 else others[0])
 
     def _other(self) -> str:
         """The only one who is about besides who acts; "" where there is nobody else, or more."""
@@ -134,7 +141,10 @@ class BeatReader:
             action = self._called(rest[:size])
             if action is None or (found is not None and not self._is_there(rest[size:])):
                 continue
-            if size < len(rest) or not self._wants_target(action):
+            names_something = size > 1 and self._is_name(
+                rest[size - 1]
+            )  # `look at phone`, not `look-at-phone`
+            if not names_something and (size < len(rest) or not self._wants_target(action)):
                 return action, size
             found = action, size  # unless fewer words leave a target: `serve ball`, not `serve-ball`
         if found is not None:

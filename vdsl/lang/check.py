@@ -299,6 +299,7 @@ class _Checker:
         names = tuple(self.characters)
         if stage.reader is None or stage.reader.characters != names:
             stage.reader = BeatReader(self.catalog, names, stage.scope, self.report)
+            stage.reader.bodies = self._bodies()
             stage.reader.about = tuple(name for name in names if name in stage.members)
             stage.reader.bring = lambda word, span, who: bring_named(word, span, who, stage, self.catalog)
         done = tuple(beat for each in node.beats for beat in self._beats(stage.reader, each, stage))
@@ -314,6 +315,16 @@ class _Checker:
         )
         shots = read_shots(node, context, self.defaults, self.ids, self.report)
         self.lines.append(StoryLine(stage.index, done, shots, self.joins.give(), node.span))
+
+    def _bodies(self) -> dict[str, str]:
+        """Whether people of the storyboard are feminine or masculine, by name, where the library says."""
+        out = {}
+        for name, each in self.characters.items():
+            features = getattr(self.catalog.get("cast", each.cast), "features", None)
+            body = str(features(dict(each.arguments)).get("body", "")) if features is not None else ""
+            if body in ("feminine", "masculine"):
+                out[name] = body
+        return out
 
     def _beats(self, reader: BeatReader, node: ast.BeatNode, stage: SceneBeingRead) -> tuple[Beat, ...]:
         """What a beat says: one, or where it says ``they`` of two, one each, if it is nothing they do to each

@@ -32,7 +32,7 @@ PARTICLES = (
     "apart",
 )
 #: They say when, or how often; never what.
-ADVERBS = ("again", "suddenly", "then", "finally", "together", "back", "away", "still", "now", "just")
+ADVERBS = ("again", "suddenly", "then", "finally", "together", "back", "still", "now", "just", "too")
 #: Several words that are one preposition.
 _JOINED = {
     ("in", "front", "of"): "before",
@@ -40,7 +40,6 @@ _JOINED = {
     ("across", "from"): "opposite",
     ("next", "to"): "beside",
     ("close", "to"): "near",
-    ("away", "from"): "from",
     ("up", "to"): "to",
     ("over", "to"): "to",
     ("back", "to"): "to",
@@ -52,6 +51,7 @@ PRONOUNS = ("he", "she", "they", "it", "both", "everyone", "everybody", "all", "
 BOTH = ("they", "both")
 #: Whom it is done to: the one who was spoken of last.
 _OBJECTS = ("him", "her", "them")
+_EACH_OTHER = (("each", "other"), ("one", "another"))
 #: What is about everywhere, and is named to say where: an action that needs no place needs none of these.
 _EVERYWHERE = (
     "floor",
@@ -80,13 +80,13 @@ Words = tuple[ast.Name, ...]
 class Known:
     """What a line's words may stand for.
 
-    named: people of the storyboard; them, it: who besides the one who acts, and what, was spoken of last, or
-    ""; is_action: whether all of some words name an action
+    named: people of the storyboard; them: who, besides the one who acts, a pronoun means, or ""; it: the
+    parts of the name of what was spoken of last, or (); is_action: whether all of some words name an action
     """
 
     named: Sequence[str]
-    them: str
-    it: str
+    them: Callable[..., str]
+    it: tuple[str, ...]
     is_action: Callable[[Words], bool]
 
 
@@ -94,7 +94,7 @@ def plain(said: Words, known: Known) -> Words:
     """The words of a beat without those that say nothing, with all words of a verb side by side."""
     character, rest = said[:1], _without(_with_names(said[1:], known), known.named)
     rest = _one_each(_without_auxiliary(rest, known.is_action), known.is_action)
-    while len(rest) > 1 and rest[-1].text in ADVERBS and rest[-1].text not in PARTICLES:
+    while len(rest) > 1 and rest[-1].text in ADVERBS and rest[-1].text not in (*PARTICLES, *known.named):
         rest = rest[:-1]
     return character + _verb_first(rest, known)
 
@@ -124,12 +124,18 @@ def targets_alone(rest: Words, is_name: Callable[[ast.Name], bool]) -> Words:
 
 def _with_names(said: Words, known: Known) -> Words:
     """With names for ``him``, ``them`` and ``it``, and for ``her`` where it is not hers that something is."""
-    out = []
+    out: list[ast.Name] = []
     for n, word in enumerate(said):
-        ends = n + 1 == len(said) or said[n + 1].text in (*PREPOSITIONS, *PARTICLES, *ARTICLES)
-        meant = known.them if word.text in _OBJECTS and (word.text != "her" or ends) else ""
-        meant = known.it if word.text == "it" else meant
-        out.append(ast.Name((meant,), word.span) if meant and word.text not in known.named else word)
+        if known.them() and tuple(w.text for w in said[n : n + 2]) in _EACH_OTHER:
+            out.append(ast.Name((known.them(),), word.span.to(said[n + 1].span)))
+            continue
+        if n and tuple(w.text for w in said[n - 1 : n + 1]) in _EACH_OTHER:
+            continue
+        ends = n + 1 == len(said) or said[n + 1].text in (*PREPOSITIONS, *PARTICLES, *ARTICLES, *ADVERBS)
+        meant: tuple[str, ...] = known.it if word.text == "it" else ()
+        if word.text in _OBJECTS and (word.text != "her" or ends) and known.them(word.text):
+            meant = (known.them(word.text),)
+        out.append(ast.Name(meant, word.span) if meant and word.text not in known.named else word)
     return tuple(out)
 
 
@@ -169,7 +175,8 @@ def _one_each(rest: Words, is_action: Callable[[Words], bool]) -> Words:
         for size in range(_LONGEST, 1, -1):
             some = rest[at : at + size]
             one = _JOINED.get(tuple(word.text for word in some))
-            if one is not None and not is_action((*out, *some)):
+            particle = some[-1].text in ("to", "from") and is_action((*out, some[0]))  # `steps back to`
+            if one is not None and not particle and not is_action((*out, *some)):
                 out.append(ast.Name((one,), some[0].span.to(some[-1].span)))
                 at += size
                 break

@@ -6,6 +6,7 @@ seat of their own, and that who acts has a place.
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass, field
 
 from . import ast
@@ -89,6 +90,8 @@ def _check_seat(
         )
         return
     sits = next(scope.sitting(at, placed.values()), None)
+    if re.fullmatch(rf"{re.escape(at.written)}_\d+", at.path[-1]):
+        return  # of several there may be another one
     if sits is None or scope.has_seat_left(at, placed.values()):
         return
     written = line.at or line.character

@@ -231,12 +231,16 @@ def _drawn_up(table: WorldObject, world: World) -> list[Spot]:
     return out
 
 
-def seat_of(target: Target | None, state: SceneState, who: str) -> Spot | None:
-    """A seat of the target nobody else sits on, with somebody the one nearest to them; without a target the
-    nearest one of the whole scene."""
-    somebody = state.actors.get(target.path[0]) if target is not None and target.kind == "character" else None
+def seat_of(target: Target | None, state: SceneState, who: str, to_sit: bool = False) -> Spot | None:
+    """A seat of the target nobody else sits on; without a target the nearest one of the whole scene.
+
+    to_sit: also a seat drawn up to a table, of somebody the one nearest to them, and of a number of things
+    that of another one
+    """
+    is_somebody = to_sit and target is not None and target.kind == "character"
+    somebody = state.actors.get(target.path[0]) if is_somebody and target is not None else None
     if target is not None and somebody is None:
-        found = seats(target, state.world)
+        found = (seats if to_sit else own_seats)(target, state.world)
     else:
         found = [s for o in state.world.objects for s in o.spots if s.name.startswith("seat")]
     if somebody is not None:
@@ -248,7 +252,7 @@ def seat_of(target: Target | None, state: SceneState, who: str) -> Spot | None:
         return [s for s in found if all(math.dist(s.position, t) > 0.35 for t in taken)]
 
     free = free_of(found)
-    if not free and target is not None:
+    if not free and target is not None and to_sit:
         free = free_of([s for other in _counted(target, state.world) for s in seats(other, state.world)])
     if somebody is not None:
         free.sort(key=lambda s: away[id(s)])

@@ -87,7 +87,7 @@ def _placed(placement: Placement, state: SceneState, report: Report) -> ActorSta
     from .places import seat_of
 
     if placement.posture == "sitting":
-        seat = seat_of(placement.at, state, placement.character)
+        seat = seat_of(placement.at, state, placement.character, to_sit=True)
         if seat is None:
             report.error(
                 "VDS171",

@@ -83,6 +83,11 @@ def _subject(shot: Shot, story: StoryProposal, filming: Filming) -> Subject:
 
 
 def _person(name: str, story: StoryProposal, filming: Filming) -> Subject:
+    return _holding(name, story, filming)
+
+
+@lru_cache(maxsize=64)
+def _holding(name: str, story: StoryProposal, filming: Filming) -> Subject:
     one = performed(name, story.performances[name], filming.skeletons[name])
     held = in_hand(one, story, filming.world)
     return replace(one, in_hand=held) if held else one

@@ -98,7 +98,7 @@ def _errand(
     if clip.needs == "second" and second is None and not actor.held:
         beat, second = something_to_pour(beat, target, state)
     if clip.seat == "down":
-        seat = seat_of(beat.target, state, beat.character)
+        seat = seat_of(beat.target, state, beat.character, to_sit=True)
         if seat is not None and (beat.target is None or seat not in own_seats(beat.target, state.world)):
             beat = replace(beat, target=spot_target(seat, state.world))
         if seat is None:

@@ -142,6 +142,42 @@ def test_pronouns_are_who_and_what_was_spoken_of_last() -> None:
     ]  # fmt: skip
 
 
+def test_a_pronoun_is_somebody_it_can_mean() -> None:
+    lines = "(anna gives ben the cup)\n(carl hugs her)\n(ben looks at carl)\n(anna kisses him again)"
+    lines += "\n(ben looks at her again)\n(anna opens kitchen.door)\n(ben closes it)\n(ben looks at carl)"
+    board, report = read(f"character carl = man\ncarl at door\n{lines}")
+    assert board is not None, [d.label for d in report.errors]
+    assert [told(line.beats[0])[:2] for line in board.lines] == [
+        ("give", "cup"), ("hug", "anna"), ("look", "carl"), ("kiss", "carl"), ("look", "anna"),
+        ("open", "door"), ("close", "door"), ("look", "carl"),
+    ]  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("line", "expected"),
+    [
+        ("(anna backs away from ben)", ("back-away", "ben", "", "")),
+        ("(anna steps back to the door)", ("back-away", "door", "", "")),
+        ("(anna walks away from ben)", ("back-away", "ben", "", "")),
+        ("(they look at each other)", ("look", "ben", "", "")),
+    ],
+)
+def test_particles_of_a_verb_are_no_prepositions(line: str, expected: tuple[str, str, str, str]) -> None:
+    assert told(beat(line)) == expected
+
+
+def test_who_looks_away_from_somebody_does_not_look_at_them() -> None:
+    for line in ("(anna looks away from ben)", "(anna turns away from ben)"):
+        board, _ = read(line)
+        assert board is None, line
+
+
+def test_what_is_there_is_named_and_part_of_no_verb() -> None:
+    """`phone` beside `look at` is the phone on the desk; `look at phone` is what is done with one's own."""
+    assert told(beat("(anna looks at the phone)", "office")) == ("look", "phone", "", "")
+    assert told(beat("(anna picks up the phone)", "office")) == ("pick-up", "phone", "", "")
+
+
 def test_two_things_in_a_line_are_told() -> None:
     _, report = read("(anna walks to the window and looks out)")
     assert report.errors[0].help == "a line says one thing: what comes after `and` is a line of its own"

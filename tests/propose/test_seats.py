@@ -46,3 +46,24 @@ def test_two_people_at_desk_are_at_two_desks() -> None:
     anna, ben = state.actors["anna"], state.actors["ben"]
     assert anna.posture == ben.posture == "sitting"
     assert math.dist(anna.position, ben.position) > 1.0
+
+
+def test_one_walks_to_a_table_and_not_to_its_chairs() -> None:
+    state = state_after("apartment.kitchen", "anna at door", "ben at window", "(anna walks to the table)")
+    seats = [s.position for o in state.world.objects for s in o.spots if s.name.startswith("seat")]
+    x, y, _ = state.actors["anna"].position
+    assert state.actors["anna"].posture == "standing"
+    table = next(o for o in state.world.objects if o.path[-1] == "table")
+    away = [max(low - p, p - high, 0.0) for p, low, high in zip((x, y), table.low, table.high, strict=False)]
+    assert math.hypot(*away) < 0.7
+    assert seats
+
+
+def test_two_may_sit_at_what_is_counted_and_a_third_is_told() -> None:
+    text = (
+        HEAD.format("apartment.kitchen")
+        + "anna at chair sitting\nben at chair sitting\n(anna nod) / (static)\n"
+    )
+    people = stage_script(text, "s").state.actors
+    assert people["anna"].posture == people["ben"].posture == "sitting"
+    assert math.dist(people["anna"].position, people["ben"].position) > 0.5

@@ -59,11 +59,8 @@ def test_one_walks_to_a_table_and_not_to_its_chairs() -> None:
     assert seats
 
 
-def test_two_may_sit_at_what_is_counted_and_a_third_is_told() -> None:
-    text = (
-        HEAD.format("apartment.kitchen")
-        + "anna at chair sitting\nben at chair sitting\n(anna nod) / (static)\n"
-    )
+def test_two_may_be_placed_at_what_is_counted() -> None:
+    text = HEAD.format("office") + "anna at desk sitting\nben at desk sitting\n(anna nod) / (static)\n"
     people = stage_script(text, "s").state.actors
     assert people["anna"].posture == people["ben"].posture == "sitting"
     assert math.dist(people["anna"].position, people["ben"].position) > 0.5

@@ -81,7 +81,7 @@ def test_shots_come_and_go() -> None:
         board(*LINES), board(*LINES[:2], *LINES[3:], "(anna sit chair_1) / (static wide high-angle)")
     )
     assert [s.status for s in found.shots] == ["same", "same", "removed", "same", "same", "added"]
-    assert found.changed[0].text == "shot 3 removed: anna pick-up cup, tilt-up medium eye-level"
+    assert found.changed[0].text == "shot 3 removed: anna pick up cup, tilt-up medium eye-level"
     assert found.changed[1].text.startswith("shot 5 added: anna sit")
 
 
@@ -109,7 +109,7 @@ def test_what_somebody_holds_is_told_and_what_goes_without_saying_is_not() -> No
     assert found[0].endswith("anna at door facing window holding bag; ben at chair_2 sitting")
     (beat,), (said,) = (board(line).lines[0].beats for line in ("(ben enters)", "(ben enters the middle)"))
     assert beat.target is not None
-    assert (beat_words(beat), beat_words(said)) == ("ben enter", "ben enter middle")
+    assert (beat_words(beat), beat_words(said)) == ("ben enters", "ben enters the middle")
 
 
 def test_cast_scene_and_settings_are_told() -> None:

@@ -139,7 +139,7 @@ class BeatReader:
         found: tuple[str, int] | None = None
         for size in range(min(_MOST_ACTION_WORDS, len(rest)), 0, -1):
             action = self._called(rest[:size])
-            if action is None or (found is not None and not self._is_there(rest[size:])):
+            if action is None or (found is not None and not self._takes(action, rest[size:])):
                 continue
             names_something = size > 1 and self._is_name(
                 rest[size - 1]
@@ -179,9 +179,16 @@ class BeatReader:
         known = self.scope is not None and bool(self.scope.look_up(word.parts))
         return known or word.text in self.characters
 
-    def _is_there(self, said: tuple[ast.Name, ...]) -> bool:
-        """Whether the last of some words is somebody, or something in the scene."""
-        return bool(said) and self.scope is not None and self._is_name(said[-1])
+    def _takes(self, action: str, said: tuple[ast.Name, ...]) -> bool:
+        """Whether the last of some words is somebody, or something in the scene, to whom it can be done."""
+        definition = self.catalog.get("action", action)
+        if not said or self.scope is None or getattr(definition, "target", "none") == "none":
+            return False
+        kinds = tuple(getattr(definition, "target_kinds", ())) or tuple(_KIND_WORDS)
+        if said[-1].text in self.characters:
+            return "character" in kinds
+        found = self.scope.look_up(said[-1].parts)
+        return bool(found) and ("place" in kinds or (found[0].kind != "room" and "object" in kinds))
 
     def _wants_target(self, action: str) -> bool:
         """Whether nothing can be done by it alone."""

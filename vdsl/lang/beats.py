@@ -75,7 +75,7 @@ class BeatReader:
             unsaid = (self.scope.first(word, node.span) for word in getattr(definition, "otherwise", ()))
             named = [target for target in unsaid if target is not None][:1]
         whom = spoken_of if possessed else self._other()
-        if not named and whom and _is_done_to_somebody(definition):
+        if not named and whom and self.takes_somebody(action):
             named = [Target("character", (whom,), whom, node.span, implied=True)]
         things = (t for t in named if t.kind == "object" and not t.implied)
         self._it = next((tuple(t.written.split(".")) for t in things), self._it)
@@ -92,6 +92,13 @@ class BeatReader:
                 self.report.error("VDS075", target.span, label=f"{character} cannot do this to themselves")
                 return None
         return Beat(character, action, first, second, node.span, manner)
+
+    def takes_somebody(self, action: str) -> bool:
+        """Whether an action is nothing without somebody it is done to, and one will do: ``hug``."""
+        definition = self.catalog.get("action", action)
+        wants, second = (getattr(definition, name, "none") for name in ("target", "second"))
+        kinds = tuple(getattr(definition, "target_kinds", ()))
+        return wants == "required" and second != "required" and kinds == ("character",)
 
     # -- who and what ----------------------------------------------------------------
 
@@ -141,9 +148,8 @@ class BeatReader:
             action = self._called(rest[:size])
             if action is None or (found is not None and not self._takes(action, rest[size:])):
                 continue
-            names_something = size > 1 and self._is_name(
-                rest[size - 1]
-            )  # `look at phone`, not `look-at-phone`
+            # `look at phone`, where there is a phone, and not `look-at-phone`
+            names_something = size > 1 and self._is_name(rest[size - 1])
             if not names_something and (size < len(rest) or not self._wants_target(action)):
                 return action, size
             found = action, size  # unless fewer words leave a target: `serve ball`, not `serve-ball`
@@ -384,13 +390,6 @@ def _works_with(definition: DefinitionBase, rest: tuple[ast.Name, ...]) -> bool:
         and rest[:1] != ()
         and rest[0].text == "with"
     )
-
-
-def _is_done_to_somebody(definition: DefinitionBase) -> bool:
-    """Whether an action is nothing without somebody it is done to, and one will do: ``hug``."""
-    wants, second = (getattr(definition, name, "none") for name in ("target", "second"))
-    kinds = tuple(getattr(definition, "target_kinds", ()))
-    return wants == "required" and second != "required" and kinds == ("character",)
 
 
 def _is_second(definition: DefinitionBase, named: list[Target]) -> bool:

@@ -330,15 +330,10 @@ class _Checker:
         """What a beat says: one, or where it says ``they`` of two, one each, if it is nothing they do to each
         other."""
         both = phrases.both(node, reader.about, tuple(self.characters))
-        first = self._beat(reader, both[0], stage)
-        if (
-            first is None
-            or len(both) == 1
-            or (first.target is not None and first.target.path == both[1].words[0].parts)
-        ):
-            return () if first is None else (first,)
-        second = self._beat(reader, both[1], stage)
-        return (first,) if second is None else (first, second)
+        found = [self._beat(reader, both[0], stage)]
+        if len(both) > 1 and found[0] is not None and not reader.takes_somebody(found[0].action):
+            found.append(self._beat(reader, both[1], stage))
+        return tuple(beat for beat in found if beat is not None)
 
     def _beat(self, reader: BeatReader, node: ast.BeatNode, stage: SceneBeingRead) -> Beat | None:
         for word in node.words:

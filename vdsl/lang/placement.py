@@ -6,10 +6,9 @@ seat of their own, and that who acts has a place.
 
 from __future__ import annotations
 
-import re
 from dataclasses import dataclass, field
 
-from . import ast
+from . import ast, words
 from .beats import BeatReader, resolve
 from .bringing import held_at_first
 from .diagnostics import Report, listing
@@ -90,7 +89,7 @@ def _check_seat(
         )
         return
     sits = next(scope.sitting(at, placed.values()), None)
-    if re.fullmatch(rf"{re.escape(at.written)}_\d+", at.path[-1]):
+    if words.counts_under(at.written, at.path[-1]):
         return  # of several there may be another one
     if sits is None or scope.has_seat_left(at, placed.values()):
         return

@@ -7,7 +7,6 @@ depth are ambiguous. Names of nodes and of spots the set gives come before the s
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
@@ -17,6 +16,7 @@ from .definitions.types import DefinitionBase, SetNode
 from .diagnostics import Report, listing, nearest
 from .ir import Placement, Target
 from .source import Span
+from .words import counts_under
 
 ROOMS = ("set", "room", "area")
 
@@ -102,7 +102,7 @@ class Scope:
         that kind, whatever it is called."""
         top = node_at(self.root, self.room) or self.root
         nodes = [Found(path, node, False) for path, node in walk(top, self.room) if path != self.room]
-        counted = [f for f in nodes if re.fullmatch(rf"{re.escape(word)}_\d+", f.path[-1])]
+        counted = [f for f in nodes if counts_under(word, f.path[-1])]
         return counted or [f for f in nodes if f.node.prop == word]
 
     def look_up(self, parts: tuple[str, ...]) -> list[Found]:

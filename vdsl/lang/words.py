@@ -206,6 +206,11 @@ def plain_forms(verb: str) -> tuple[str, ...]:
     return tuple(form for form in forms if len(form) > 1)
 
 
+def counts_under(word: str, name: str) -> bool:
+    """Whether things are no more than counted under a word: ``desk_2`` under ``desk``."""
+    return re.fullmatch(rf"{re.escape(word)}_\d+", name) is not None
+
+
 def fold(word: str) -> str:
     """A word as the tables have it."""
     folded = re.sub(r"\s*\+\s*", "+", word.casefold()).replace("_", "-").replace(" ", "-")

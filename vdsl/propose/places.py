@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import re
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -14,6 +13,7 @@ from runtime.world import Spot, World, WorldObject
 
 from ..lang.ir import Target
 from ..lang.source import Source, Span
+from ..lang.words import counts_under
 from .cameras import find_object
 from .state import SceneState, floor_under, room_middle
 
@@ -195,13 +195,11 @@ def seats(target: Target, world: World) -> list[Spot]:
 
 def _counted(target: Target, world: World) -> list[Target]:
     """The others of a number of things, where a line says ``desk`` and means ``desk_1`` or another one."""
-    numbered = re.compile(rf"{re.escape(target.written)}_\d+")
-    if target.kind != "object" or not numbered.fullmatch(target.path[-1]):
+    word = target.written
+    if target.kind != "object" or not counts_under(word, target.path[-1]):
         return []
     paths = (item.path for item in world.objects if item.path[:-1] == target.path[:-1])
-    return [
-        replace(target, path=path) for path in paths if numbered.fullmatch(path[-1]) and path != target.path
-    ]
+    return [replace(target, path=p) for p in paths if counts_under(word, p[-1]) and p != target.path]
 
 
 def own_seats(target: Target, world: World) -> list[Spot]:

@@ -183,6 +183,7 @@ class ActionClip:
     capture: motion that the body goes through in the clip's own part
     goes: whether one gets to the target first even where the clip's own part needs nothing from it
     roams: whether it is to go somewhere, even where no target says where to
+    against: metres from what the back is against to the feet, 0 where it is against nothing
     """
 
     name: str
@@ -203,6 +204,7 @@ class ActionClip:
     capture: Capture | None = None
     goes: bool = False
     roams: bool = False
+    against: float = 0.0
 
     def variant(self, name: str) -> Variant:
         """The variant of that name, or the first."""

@@ -188,9 +188,13 @@ def test_they_are_both_or_do_it_to_each_other() -> None:
     assert board is not None
     assert [(b.character, b.action) for b in board.lines[0].beats] == [("anna", "laugh"), ("ben", "laugh")]
     assert told(beat("(they shake hands)")) == ("shake-hands", "ben", "", "")
-    board, _ = read("(they look at each other)")
-    assert board is not None
-    assert [(b.character, told(b)[1]) for b in board.lines[0].beats] == [("anna", "ben"), ("ben", "anna")]
+    for line in ("(they talk)", "(they chat)", "(they look at each other)"):
+        board, _ = read(line)
+        assert board is not None
+        assert [(b.character, told(b)[1]) for b in board.lines[0].beats] == [
+            ("anna", "ben"),
+            ("ben", "anna"),
+        ]
     board, report = read("(they laugh)\ncharacter carl = man\ncarl at door\n(they laugh)\n(he waves)")
     assert board is None
     assert [d.code for d in report.errors] == ["VDS065", "VDS065"]

@@ -100,6 +100,12 @@ class BeatReader:
         kinds = tuple(getattr(definition, "target_kinds", ()))
         return wants == "required" and second != "required" and kinds == ("character",)
 
+    def between(self, action: str) -> bool:
+        """Whether two who do an action both do it to each other if nobody is named: ``they talk``."""
+        definition = self.catalog.get("action", action)
+        kinds = tuple(getattr(definition, "target_kinds", ()))
+        return getattr(definition, "group", "") in ("talk", "social") and "character" in kinds
+
     # -- who and what ----------------------------------------------------------------
 
     def _character(self, node: ast.BeatNode) -> str | None:

@@ -7,6 +7,7 @@ name resolved and every default filled in. One pass over the statements, top to 
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import PurePath
 
 from . import ast, phrases
@@ -333,7 +334,12 @@ class _Checker:
         found = [self._beat(reader, both[0], stage)]
         if len(both) > 1 and found[0] is not None and not reader.takes_somebody(found[0].action):
             found.append(self._beat(reader, both[1], stage))
-        return tuple(beat for beat in found if beat is not None)
+        said = [beat for beat in found if beat is not None]
+        if len(said) == 2 and all(beat.target is None for beat in said) and reader.between(said[0].action):
+            names = [beat.character for beat in reversed(said)]
+            others = [Target("character", (name,), name, node.span, implied=True) for name in names]
+            said = [replace(beat, target=other) for beat, other in zip(said, others, strict=True)]
+        return tuple(said)
 
     def _beat(self, reader: BeatReader, node: ast.BeatNode, stage: SceneBeingRead) -> Beat | None:
         for word in node.words:

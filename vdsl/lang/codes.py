@@ -658,6 +658,11 @@ CODES: dict[str, Code] = {
         "no room to stand here",
         "To be placed at something there must be free floor beside it: a circle of half a metre.",
     ),
+    "VDS173": Code(
+        "nothing to lean against",
+        "To lean against something one stands before it with one's back to it, so it has to be upright and fixed, as a wall, "
+        "a tree or a counter, with free floor before it. Where no name is given it is the nearest wall.",
+    ),
     "VDS260": Code(
         "two manners",
         "A person does one thing in one manner: `briskly` or `sadly`, not both.",

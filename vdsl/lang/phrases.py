@@ -55,6 +55,7 @@ _EACH_OTHER = (("each", "other"), ("one", "another"))
 #: What is about everywhere, and is named to say where: an action that needs no place needs none of these.
 _EVERYWHERE = (
     "floor",
+    "wall",
     "ground",
     "grass",
     "sky",

@@ -37,6 +37,16 @@ def report_no_seat(beat: Beat, state: SceneState, report: Report) -> None:
     )
 
 
+def report_no_support(beat: Beat, report: Report) -> None:
+    """There is nothing to have one's back against."""
+    span = beat.target.span if beat.target is not None else beat.span
+    written = (
+        f"no free place before `{beat.target.written}`" if beat.target is not None else "no wall near by"
+    )
+    report.error("VDS173", span, label=f"{beat.character} cannot lean here: {written}",
+                 help="name what to lean against: a tree, a car, a counter")  # fmt: skip
+
+
 def _free_seats(state: SceneState, who: str) -> list[str]:
     names = []
     for item in state.world.objects:

@@ -18,7 +18,8 @@ from ..lang.diagnostics import Report
 from ..lang.ir import Beat, Shot, Target
 from .bringing import with_brought
 from .cameras import find_object
-from .hindrance import report_no_seat, report_nothing_opens, report_unreachable
+from .hindrance import report_no_seat, report_no_support, report_nothing_opens, report_unreachable
+from .leaning import stop_against
 from .opening import Way, part_point, part_to_move, stand_to_move, stands, ways_through
 from .places import (
     ARM,
@@ -38,6 +39,7 @@ _NEAR_ENOUGH = 1.25  # metres between people who can hand each other things or t
 #: Where one goes who has no place to go to: radians off ahead, and metres.
 _ROAM_TURNS, _ROAM_FAR = (0.0, 0.5, -0.5, 1.0, -1.0, 1.6, -1.6, 2.4, -2.4, 3.1), (4.5, 3.6, 2.8, 2.0, 1.4)
 _STANDS_THERE = 0.2  # metres from the place to stand within which nobody takes a step
+_LEANS_THERE = 0.06  # the same where the back is to be against something
 
 
 @dataclass(frozen=True, eq=False)
@@ -119,6 +121,8 @@ def _errand(
         free = nearest_free(state.world, actor.position, state.people(but=beat.character) + taken)
         way = np.array([actor.position, free]) if free is not None else np.zeros((0, 3))
         return Errand(_task(clip, target, second, shot), (way,), None)
+    if clip.against:
+        return _leaning(beat, clip, target, shot, state, taken, report, ways)
     where = _where_to(beat, clip, target, second, state)
     if where is None and clip.roams and target is None and _is_on_the_way(clip):
         roaming = _roaming(beat.character, state, taken)
@@ -143,6 +147,33 @@ def _errand(
         report_unreachable(beat, where, state, here, report)
         return None
     task = replace(_task(clip, target, second, shot), arrive_heading=stop.heading)
+    return _with_ways(task, found, stop)
+
+
+def _leaning(
+    beat: Beat,
+    clip: ActionClip,
+    target: TargetPoint | None,
+    shot: Shot | None,
+    state: SceneState,
+    taken: Discs,
+    report: Report,
+    ways: int,
+) -> Errand | None:
+    """To a place with the back against something."""
+    here = state.actors[beat.character].position
+    stop = stop_against(beat.target, state, beat.character, taken, clip.against)
+    if stop is None:
+        report_no_support(beat, report)
+        return None
+    task = replace(_task(clip, target, None, shot), arrive_heading=stop.heading)
+    if math.dist(stop.place, here) < _LEANS_THERE:
+        return Errand(task, (), stop)
+    people = state.people(but=beat.character) + taken
+    found = ways_through(state.world, here, stop.place, ways, people)
+    if not found:
+        report_no_support(beat, report)
+        return None
     return _with_ways(task, found, stop)
 
 

@@ -57,6 +57,7 @@ def build_clip(action: ActionDef) -> ActionClip:
         action.needs_hand,
         any(v.part.hold for v in action.variants),
         goes=action.goes,
+        against=action.against,
         roams=action.group == "going"
         and action.travel != "none"
         and action.sit == "keep"

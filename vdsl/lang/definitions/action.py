@@ -20,8 +20,8 @@ from .types import DefinitionBase
 
 TARGET_KINDS = ("place", "object", "character")
 SETTINGS = ("target", "second", "duration", "travel", "stride", "cadence", "gait", "sit", "posture", "needs",
-            "faces", "turn", "apart", "along", "hold", "feeling", "group", "example", "also", "partner",
-            "variant", "brings")  # fmt: skip
+            "faces", "turn", "apart", "against", "along", "hold", "feeling", "group", "example", "also",
+            "partner", "variant", "brings")  # fmt: skip
 CHANGES = ("amplitude", "tempo", "mirror", "duration", "stride", "cadence", "gait", "instead", "partner")
 TRAVELS = ("none", "walk", "run", "skip", "crawl")
 #: Which drawer of the library an action lies in.
@@ -69,6 +69,7 @@ class ActionDef(DefinitionBase):
     posture: one of :data:`POSTURES` to take first, "" to stay as one is; posture_time: seconds for it, 0 for
         as long as it takes; rises: stands up again at the end
     apart: metres between two people, 0 for talking distance; feeling: what shows on the face, "" for nothing
+    against: metres from what the back is against to the feet, 0 where it is against nothing
     needs_hand: left or right, "" for either; group: one of :data:`GROUPS`, "" where it is not said
     example: a line that shows it, as in the language, anna acting and ben the other; props: names of the
         props it needs
@@ -95,6 +96,7 @@ class ActionDef(DefinitionBase):
     posture_time: float = 0.0
     rises: bool = False
     apart: float = 0.0
+    against: float = 0.0
     feeling: str = ""
     group: str = ""
     example: str = ""
@@ -172,6 +174,7 @@ def _settings(
         posture_time=posture.seconds("in", 0.0) if posture is not None else 0.0,
         rises=posture.flag("back") if posture is not None else False,
         apart=settings["apart"].value_length(0) if "apart" in settings else 0.0,
+        against=settings["against"].value_length(0) if "against" in settings else 0.0,
         feeling=word("feeling", "", tuple(FEELINGS)),
         group=word("group", "", GROUPS),
         example=example.value_text(0) if example is not None else "",

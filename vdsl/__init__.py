@@ -2,29 +2,51 @@
 
 ``vdsl.parse`` reads text, ``vdsl.check`` checks a file, ``vdsl.compile`` makes the whole film. Every
 stage between is a function of its own: see ``vdsl.lang``, ``vdsl.stage``, ``vdsl.propose``,
-``vdsl.pipeline`` and ``vdsl.emit``. Importing this package loads nothing heavy.
+``vdsl.pipeline`` and ``vdsl.emit``. Importing this package loads nothing until it is asked for.
 """
 
 from __future__ import annotations
 
-from importlib.metadata import PackageNotFoundError, version
+from importlib import import_module
 from pathlib import Path
-from typing import TYPE_CHECKING
-
-from .lang import Report, Settings, Source, Storyboard, parse
-from .pipeline.script import Checked, ScriptError, load_storyboard
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from .lang import Report, Settings, Source, Storyboard, parse
     from .pipeline.compile import Result
+    from .pipeline.script import Checked, ScriptError
 
-try:
-    __version__ = version("vdsl")
-except PackageNotFoundError:  # run from a checkout that was never installed
-    __version__ = "0+unknown"
+    __version__: str
+
+#: Where the names are that are looked up when they are first used.
+_HOMES = {
+    "Checked": ".pipeline.script",
+    "Report": ".lang",
+    "ScriptError": ".pipeline.script",
+    "Settings": ".lang",
+    "Source": ".lang",
+    "Storyboard": ".lang",
+    "parse": ".lang",
+}
+
+
+def __getattr__(name: str) -> Any:
+    if name == "__version__":
+        from importlib.metadata import PackageNotFoundError, version
+
+        try:
+            return version("vdsl")
+        except PackageNotFoundError:  # run from a checkout that was never installed
+            return "0+unknown"
+    if name in _HOMES:
+        return getattr(import_module(_HOMES[name], __name__), name)
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
 
 
 def check(path: str | Path, settings: Settings | None = None) -> Checked:
     """Read and check a script. Raises :class:`ScriptError` with every mistake, or OSError."""
+    from .pipeline.script import load_storyboard
+
     return load_storyboard(Path(path), settings)
 
 
@@ -50,6 +72,7 @@ def compile(
     """
     # Only now: parsing and checking must not wait for numpy, torch and taichi.
     from .emit.guides import guides_of
+    from .lang import Settings
     from .pipeline.compile import compile_file
     from .pipeline.options import Options
 

@@ -33,3 +33,13 @@ MATERIALS = (
 #: The number of glass before which it is night: dark whatever lies behind it, and kept as dark as it is said
 #: to be. Nothing is made of it by word.
 NIGHT_GLASS = len(MATERIALS)
+
+#: The number of skin that no light reaches, below the jaw and the nose, which paper has in strokes; nor is
+#: this said in a script. Bodies call it ``shade``.
+SKIN_SHADE = NIGHT_GLASS + 1
+LAST = SKIN_SHADE
+
+
+def number_of(word: str) -> int:
+    """The number of a material, or of what bodies are made of besides. Raises ValueError."""
+    return SKIN_SHADE if word == "shade" else MATERIALS.index(word)

@@ -62,3 +62,12 @@ def test_the_mistake_in_the_readme_is_told_as_it_says() -> None:
     (shown,) = re.findall(r"^```text\n(error\[.*?)^```", readme, re.MULTILINE | re.DOTALL)
     story = next(text for name, text in _samples() if name == "README.md 1")
     assert as_text(_errors("hello", story.replace("anna walk", "anna wlk"))) == shown.rstrip("\n")
+
+
+def test_the_front_page_counts_what_the_library_has() -> None:
+    catalog = Catalog()
+    said = re.findall(r"\[(\d+) \w+\]\(docs/library/(\w+)\.md\)", (ROOT / "README.md").read_text("utf-8"))
+    kinds = {"sets": "set", "props": "prop", "cast": "cast", "actions": "action"}
+    assert {page: int(number) for number, page in said} == {
+        page: len(catalog.names(kind)) for page, kind in kinds.items()
+    }

@@ -122,6 +122,7 @@ def _skin(head: Head) -> list[Piece]:
     piece = hemmed(piece, 0.034 * u)
     skin, rim = parted(piece, lash, _LASH, "skin")
     skin, jaw = parted(skin, head.field(under_jaw(head)), shadow_colour(f), "skin")
+    jaw = replace(jaw, material="shade")
     lines = [head.field(line) for line in under_nose(head)]
     under, patch = cut_out(skin.patch, head.field(nose_region(head)), lines)
     nose, skin = replace(jaw, patch=under), replace(skin, patch=patch)
@@ -167,7 +168,8 @@ def _ears(head: Head) -> list[Piece]:
     low, high = head.metres(np.array([-0.2, 0.22, 0.28])), head.metres(np.array([0.12, 0.48, 0.66]))
     patch = simplify(polygonise(solid, low, high, 0.0115 * u), 170, solid)
     whole = Piece(patch, head.figure.spec.skin, "skin", solid, rule="head", symmetry="side")
-    return parted(whole, head.field(ear_bowl(head, 0.006)), shadow_colour(head.figure), "skin")
+    ear_, bowl = parted(whole, head.field(ear_bowl(head, 0.006)), shadow_colour(head.figure), "skin")
+    return [ear_, replace(bowl, material="shade")]
 
 
 def _lash_outline(head: Head) -> Field:

@@ -7,7 +7,8 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from ..mesh import MATERIALS, Mesh
+from ..materials import number_of
+from ..mesh import Mesh
 from .anatomy import Figure
 from .build import Body
 from .extras import extras
@@ -48,7 +49,7 @@ def make_body(spec: BodySpec) -> Body:
         np.concatenate([r[1] for r in rows]).astype(np.float32),
         np.repeat(np.array([p.colour for p in looks], np.float32), sizes, axis=0),
         np.repeat(np.array([PARTS.index(p.part) for p in looks], np.int32), sizes),
-        np.repeat(np.array([MATERIALS.index(p.material) for p in looks], np.int32), sizes),
+        np.repeat(np.array([number_of(p.material) for p in looks], np.int32), sizes),
     )
     joints, weights = strongest(np.concatenate([r[3] for r in rows]))
     return Body(spec, figure.skeleton, mesh, joints, weights)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from ..materials import MATERIALS
+from ..materials import MATERIALS, SKIN_SHADE
 from ..world import Light
 from .film import exposed, to_encoded, to_linear, unexposed
 from .types import Style
@@ -18,6 +18,7 @@ CLAY_HOURS = 0.25  # 0: as light at night as at noon, 1: as dark as it is
 CLAY_BACKDROP = ((0.93, 0.93, 0.92), (0.80, 0.83, 0.86))  # sRGB
 LUMA = np.array([0.2126, 0.7152, 0.0722])
 CLOTH_INK, SKIN_INK = (0.40, 0.84), (0.50, 0.90)  # darkness from which it takes ink, and at which it is black
+SHADE_INK = 0.24  # ink of skin that no light reaches, at least
 PAPER_SHARE = 0.66  # what a thing must throw back of the light to stay white on paper
 GLOOM = (200.0, 145.0)  # paper levels at which it begins to be, and is as gloomy as can be
 
@@ -72,7 +73,9 @@ def paper_tones(
     tone = np.clip(_most(np.asarray(color, np.float64), light) / paper_level(light), 0.05, 1.0)
     low, high = np.where((material == MATERIALS.index("cloth"))[:, None], CLOTH_INK, SKIN_INK).T
     share = np.clip((1.0 - tone - low) / (high - low), 0.0, 1.0)
-    return np.stack([tone, 0.84 * share * share * (3.0 - 2.0 * share)], axis=1).astype(np.float32)
+    ink = 0.84 * share * share * (3.0 - 2.0 * share)
+    ink = np.where(material == SKIN_SHADE, np.maximum(ink, SHADE_INK), ink)
+    return np.stack([tone, ink], axis=1).astype(np.float32)
 
 
 def _most(color: NDArray[np.float64], light: Light) -> NDArray[np.float64]:

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 
-from ..materials import NIGHT_GLASS
+from ..materials import LAST, NIGHT_GLASS
 from ..mesh import MATERIALS, Mesh
 from .bake import Volume, key_casters, stage_bounds
 from .density import density_volume
@@ -103,7 +103,7 @@ def check(scene: RenderScene) -> None:
             raise ValueError(f"RenderScene.{name}: normals and colours must be finite")
         if len(ids) != len(mesh.faces):
             raise ValueError(f"RenderScene.{name}_object: {len(ids)} ids for {len(mesh.faces)} faces")
-        if len(mesh.materials) and not (mesh.materials.min() >= 0 and mesh.materials.max() <= NIGHT_GLASS):
+        if len(mesh.materials) and not (mesh.materials.min() >= 0 and mesh.materials.max() <= LAST):
             raise ValueError(f"RenderScene.{name}: a material is not in MATERIALS")
     if len(scene.static_wall) != len(scene.static.faces):
         raise ValueError("RenderScene.static_wall: expected one number for each static face")

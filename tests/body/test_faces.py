@@ -12,6 +12,7 @@ from runtime.body.features import MOUTH, lip_colour
 from runtime.body.head import Head, eye_lines
 from runtime.body.pieces import PARTS
 from runtime.body.spec import BodySpec
+from runtime.materials import SKIN_SHADE
 from vdsl.lang.definitions.cast import CastDef
 from vdsl.library import Catalog
 from vdsl.stage.cast import body_spec
@@ -75,6 +76,7 @@ def test_a_head_stands_out_from_its_neck(name: str) -> None:
     ahead = dark & (middle[:, 0] > 0.1)
     assert (ahead & (middle[:, 2] > -0.25) & (middle[:, 2] < 0.05)).sum() > 20, "under the jaw"
     assert (ahead & (middle[:, 2] > 0.26) & (middle[:, 2] < 0.34)).sum() > 4, "under the nose"
+    assert (body.mesh.materials[ahead] == SKIN_SHADE).all(), "told apart on paper"
     cheeks = (middle[:, 2] > 0.08) & (middle[:, 2] < 0.18) & (middle[:, 0] > 0.1)
     assert not (dark & cheeks).any()
 

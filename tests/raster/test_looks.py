@@ -10,7 +10,8 @@ import pytest
 from numpy.typing import NDArray
 from raster_scenes import box, looking, room, scene, sphere, still
 
-from runtime.materials import MATERIALS
+from runtime.materials import MATERIALS, SKIN_SHADE
+from runtime.raster.kernels.hatch import LIGHTEST
 from runtime.raster.looks import glass_colors, gloom, packed_light, paper_tones
 from runtime.raster.renderer import Renderer
 from runtime.raster.types import STYLES, RenderScene, Views
@@ -141,6 +142,14 @@ def test_paper_takes_dark_cloth_for_black_and_leaves_skin_open() -> None:
     assert tones[2, 1] > 0.7
     (_, as_skin), (_, as_cloth) = paper_tones(np.array([tan, tan]) / 3, np.array([plain, cloth]), light)
     assert as_skin < as_cloth
+
+
+def test_paper_has_strokes_below_the_jaw_in_any_light() -> None:
+    for share in (0.3, 1.0):
+        light = Light((0.3, 0.2, 0.9), (share, share, share), (share, share, share), (0.6, 0.6, 0.6), GREY)
+        tan = np.array([(0.5, 0.3, 0.16)] * 2)
+        (_, skin), (_, below) = paper_tones(tan, np.array([MATERIALS.index("plain"), SKIN_SHADE]), light)
+        assert skin < LIGHTEST[0] < below
 
 
 def test_clay_is_nearly_as_light_at_night_as_by_day() -> None:

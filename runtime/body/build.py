@@ -21,7 +21,7 @@ from .skeleton import PALETTE, Skeleton
 from .spec import BodySpec
 
 #: Raised with every change of shape, so that old cache files are not read.
-VERSION = 29
+VERSION = 31
 
 
 @dataclass(frozen=True, eq=False)

@@ -32,7 +32,7 @@ from .head import (
 from .pieces import Piece, hemmed, parted, parted_all, shade
 from .sheets import sheet, tube
 from .spec import Colour
-from .surface import Focus, Patch, clip, cull, cut_out, half, polygonise, simplify
+from .surface import Bend, Focus, Patch, clip, cull, cut_out, half, polygonise, simplify
 
 _WHITE: Colour = (0.97, 0.96, 0.94)
 _DARK: Colour = (0.10, 0.07, 0.07)
@@ -72,7 +72,8 @@ def limb_pieces(f: Figure) -> list[Piece]:
     patch = polygonise(local, (start, -0.065 * h, -0.06 * h), (reach, 0.065 * h, 0.06 * h), 0.0045 * h / 1.7)
     wrist = f.p.upper_arm + f.p.forearm
     focus = Focus((wrist + 0.55 * f.p.hand, 0.0, 0.0), 0.6 * f.p.hand, 2.2)
-    patch = simplify(patch, round((500 if long_sleeves else 760) * f.detail), local, focus)
+    elbow = Bend((f.p.upper_arm, 0.0, 0.0), (1.0, 0.0, 0.0), 0.054 * h, 0.060 * h, 0.010 * h)
+    patch = simplify(patch, round((500 if long_sleeves else 790) * f.detail), local, (focus, elbow))
     patch = Patch(
         patch.vertices @ ARM_FRAME + origin,
         patch.faces[:, ::-1] if np.linalg.det(ARM_FRAME) < 0 else patch.faces,
@@ -97,7 +98,7 @@ def _skin(head: Head) -> list[Piece]:
     patch = polygonise(solid, low, high, 0.0150 * u)
     centre = o + np.array([0.30, 0.10, 0.34]) * u
     focus = Focus((float(centre[0]), float(centre[1]), float(centre[2])), 0.24 * u, 3.6)
-    patch = half(simplify(patch, round(1680 * f.detail), solid, focus))
+    patch = half(simplify(patch, round(1680 * f.detail), solid, (focus,)))
     cover = hair_cover(head)
     if cover is not None:
         patch = cull(patch, cover, 0.012 * u)

@@ -9,7 +9,7 @@ import numpy as np
 from .anatomy import LEG_FRAME, Figure, leg_loft, shoe, trunk
 from .armour import rings
 from .field import Field, Knot, Points, Values, loft, smooth_min, union
-from .outfit import above, both, skirt_tail, surface_of
+from .outfit import above, both, knee, skirt_tail, surface_of
 from .pieces import Piece, hemmed, parted, parted_all, shade
 from .sheets import ellipsoid_patch, on_chest, plate, strand
 from .spec import Colour
@@ -81,7 +81,7 @@ def _trousers(f: Figure) -> list[Piece]:
     if f.spec.shoes == "boots" and not shorts:
         low = boot_top(f) - 0.025 * h
     waist = f.level(0.34 if f.spec.bottom == "overalls" else 0.14)
-    patch = surface_of(f, shape, low - 0.04 * h, waist + 0.05 * h, False, 650)
+    patch = surface_of(f, shape, low - 0.04 * h, waist + 0.05 * h, False, 650, legs=True)
     patch = clip(patch, both(above(low, 0.06 if f.spec.shoes != "boots" else 0.0), lambda p: p[:, 2] - waist))
     piece = Piece(
         patch, f.spec.bottom_color, "over" if over else "bottom", shape, rule="legs", material="cloth"
@@ -210,5 +210,5 @@ def bare_legs(f: Figure) -> list[Piece]:
     low = boot_top(f) - 0.02 * h if f.spec.shoes == "boots" else 0.3 * f.p.ankle
     patch = polygonise(solid, (-0.1 * h, 0.0, low), (0.1 * h, 0.14 * h, top_z), 0.0065)
     colour = f.spec.skin if not long or f.spec.top == "gown" else shade(f.spec.shoes_color, 0.9)
-    patch = simplify(patch, 200 if long else 420, solid)
+    patch = simplify(patch, 200 if long else 440, solid, (knee(f),))
     return [Piece(patch, colour, "skin", solid, rule="legs", symmetry="side")]

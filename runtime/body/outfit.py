@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from .anatomy import ARM_FRAME, TORSO_FRAME, Figure, arm_loft, leg_loft, limb, trunk
+from .anatomy import ARM_FRAME, TORSO_FRAME, Figure, arm_loft, arm_point, leg_loft, limb, trunk
 from .field import Field, Knot, Points, Values, loft, smooth_min, union
 from .pieces import Piece
-from .surface import Patch, clip, half, polygonise, simplify
+from .surface import Bend, Patch, clip, half, polygonise, simplify
 
 
 def sleeve(f: Figure, grow: float, end: float, flare: float = 0.0) -> Field:
@@ -98,16 +98,36 @@ def top_solid(f: Figure, grow: float, ease: float, sleeves: Field) -> Field:
 
 
 def surface_of(
-    f: Figure, solid: Field, low_z: float, high_z: float, arm: bool, faces: int, step: float = 0.0120
+    f: Figure,
+    solid: Field,
+    low_z: float,
+    high_z: float,
+    arm: bool,
+    faces: int,
+    step: float = 0.0120,
+    legs: bool = False,
 ) -> Patch:
-    """The left half of a garment's surface between two heights, ``arm`` telling whether it has a sleeve.
+    """The left half of a garment's surface between two heights.
 
+    arm, legs: whether it has a sleeve, and legs
     step: of the grid it is found on, metres for somebody 1.7 m tall; less for what is fluted
     """
     low, high = _box(f, low_z, high_z, arm)
-    return half(
-        simplify(polygonise(solid, low, high, step * f.p.height / 1.7), round(f.detail * faces), solid)
-    )
+    patch = polygonise(solid, low, high, step * f.p.height / 1.7)
+    bent = (elbow(f),) * arm + (knee(f),) * legs
+    return half(simplify(patch, round(f.detail * faces), solid, bent))
+
+
+def elbow(f: Figure) -> Bend:
+    """Where the left sleeve bends."""
+    (x, y, z), (u, v, w), h = arm_point(f, f.p.upper_arm), ARM_FRAME[0], f.p.height
+    return Bend((x, y, z), (u, v, w), 0.054 * h, 0.080 * h, 0.012 * h)
+
+
+def knee(f: Figure) -> Bend:
+    """Where the left leg bends."""
+    h = f.p.height
+    return Bend((0.0, f.p.hip[0], f.p.knee), (0.0, 0.0, 1.0), 0.058 * h, 0.090 * h, 0.012 * h)
 
 
 def garment(

@@ -5,6 +5,7 @@ A :class:`Patch` is a piece of surface on its way into the body: vertices and fa
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -91,17 +92,58 @@ class Focus:
         return np.array(self.centre) + d * factor[:, None]
 
 
-def simplify(patch: Patch, faces: int, field: Field | None = None, focus: Focus | None = None) -> Patch:
+@dataclass(frozen=True)
+class Bend:
+    """Where a straight limb is going to bend: it counts as ringed there, so that simplification leaves rings.
+
+    Of a straight tube nothing would be left between its ends, and long triangles make a ragged elbow.
+    centre: of the joint; axis: unit, along the limb; reach: metres to either side of the joint that bend;
+    wide: metres from the axis within which all is limb; bulge: of the rings, metres, at most a fifth of that
+    """
+
+    centre: tuple[float, float, float]
+    axis: tuple[float, float, float]
+    reach: float
+    wide: float
+    bulge: float
+
+    def warp(self, points: Points, inverse: bool = False) -> Points:
+        axis = np.array(self.axis)
+        d = points - np.array(self.centre)
+        along = d @ axis
+        across = d - along[:, None] * axis
+        radius = np.linalg.norm(across, axis=1)
+        rings = np.cos(np.clip(along / self.reach, -1.0, 1.0) * 1.5 * np.pi) ** 2 * self.bulge
+        out = radius + rings * self._share(radius)
+        if inverse:
+            out = radius
+            for _ in range(24):  # a contraction
+                out = radius - rings * self._share(out)
+        return (
+            np.array(self.centre) + along[:, None] * axis + across * (out / np.maximum(radius, 1e-9))[:, None]
+        )
+
+    def _share(self, radius: Values) -> Values:
+        """1 within the limb, falling to 0 at its border."""
+        t = np.clip((self.wide - radius) / (0.4 * self.wide), 0.0, 1.0)
+        return t * t * (3.0 - 2.0 * t)
+
+
+def simplify(
+    patch: Patch, faces: int, field: Field | None = None, focus: Sequence[Focus | Bend] = ()
+) -> Patch:
     """At most about ``faces`` triangles by quadric error; settled on ``field`` again where given."""
     if len(patch.faces) <= faces:
         return patch
-    before = patch.vertices if focus is None else focus.warp(patch.vertices)
+    before = patch.vertices
+    for each in focus:
+        before = each.warp(before)
     vertices, out = fast_simplification.simplify(
         before.astype(np.float32), patch.faces.astype(np.int32), target_count=faces, agg=7
     )
     points = vertices.astype(np.float64)
-    if focus is not None:
-        points = focus.warp(points, inverse=True)
+    for each in reversed(focus):
+        points = each.warp(points, inverse=True)
     if field is not None:
         points = settle(field, points, 4e-3)
     return Patch(points, out.astype(np.int64))

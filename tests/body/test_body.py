@@ -9,7 +9,7 @@ import pytest
 from numpy.typing import NDArray
 
 from runtime.body import build
-from runtime.body.anatomy import Figure
+from runtime.body.anatomy import ARM_FRAME, Figure
 from runtime.body.build import Body, build_body, make_body
 from runtime.body.field import monotone
 from runtime.body.pieces import PARTS
@@ -182,6 +182,25 @@ def test_elbows_and_knees_stay_full_at_120_degrees(woman: Body, man: Body) -> No
     knee = {"shin_r": turn((0, 1, 0), 120.0)}
     for who in (woman, man):
         assert bent_volume(who, "shin_r", 0.16, knee, "bottom") > 0.72
+
+
+def test_sleeves_bare_arms_and_trousers_have_rings_where_they_bend() -> None:
+    """Of a straight tube long triangles were left, and a bent elbow was ragged."""
+    for name, spec in SPECS.items():
+        body, f = make_body(spec), Figure(spec)
+        h = f.p.height
+        local = (body.mesh.vertices - f.joint("upperarm_l")) @ ARM_FRAME.T
+        arm = np.hypot(local[:, 1], local[:, 2])[body.mesh.faces].max(1) < 0.08 * h
+        for along, joint, limb, most in (
+            (local[:, 0], f.p.upper_arm, arm, 0.05),
+            (body.mesh.vertices[:, 2], f.p.knee, part(body, "bottom"), 0.03),
+        ):
+            corners = along[body.mesh.faces]
+            bends = limb & (np.abs(corners.mean(1) - joint) < 0.04 * h)
+            if limb is not arm and (spec.bottom == "shorts" or spec.top == "dress"):
+                continue
+            assert bends.sum() > 40, name
+            assert (corners.max(1) - corners.min(1))[bends].max() < most * h, name
 
 
 def test_no_triangle_grows_out_of_hand_in_a_pose(body: Body) -> None:

@@ -28,6 +28,7 @@ _HOMES = {
     "Storyboard": ".lang",
     "parse": ".lang",
 }
+_PACKAGES = ("cinema", "emit", "lang", "library", "pipeline", "propose", "stage")
 
 
 def __getattr__(name: str) -> Any:
@@ -40,7 +41,13 @@ def __getattr__(name: str) -> Any:
             return "0+unknown"
     if name in _HOMES:
         return getattr(import_module(_HOMES[name], __name__), name)
+    if name in _PACKAGES:
+        return import_module(f".{name}", __name__)
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *_HOMES, *_PACKAGES, "__version__"})
 
 
 def check(path: str | Path, settings: Settings | None = None) -> Checked:

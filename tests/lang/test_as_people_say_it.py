@@ -166,6 +166,34 @@ def test_particles_of_a_verb_are_no_prepositions(line: str, expected: tuple[str,
     assert told(beat(line)) == expected
 
 
+@pytest.mark.parametrize(
+    ("line", "action"),
+    [
+        ("(anna leans against the wall)", "lean-against"),
+        ("(anna leans up against the wall)", "lean-against"),
+        ("(anna leans with her back against the wall)", "lean-against"),
+        ("(ben leans on the wall)", "lean-against"),
+        ("(anna sits with her back against the wall)", "sit-against"),
+        ("(anna slides down the wall)", "sit-against"),
+    ],
+)
+def test_one_leans_against_the_nearest_wall(line: str, action: str) -> None:
+    assert told(beat(line)) == (action, "", "", "")
+
+
+def test_a_wall_is_nothing_that_something_else_is_done_to() -> None:
+    for line in ("(anna hits the wall)", "(anna walks to the wall)", "(anna sits down by the wall)"):
+        _, report = read(line)
+        assert [d.code for d in report.errors] == ["VDS060"], line
+
+
+def test_only_what_is_mutual_is_done_to_each_other() -> None:
+    for line in ("(they order)", "(they listen)", "(they shout)"):
+        board, _ = read(line)
+        assert board is not None
+        assert [told(b)[1] for b in board.lines[0].beats] == ["", ""], line
+
+
 def test_who_looks_away_from_somebody_does_not_look_at_them() -> None:
     for line in ("(anna looks away from ben)", "(anna turns away from ben)"):
         board, _ = read(line)
@@ -176,6 +204,8 @@ def test_what_is_there_is_named_and_part_of_no_verb() -> None:
     """`phone` beside `look at` is the phone on the desk; `look at phone` is what is done with one's own."""
     assert told(beat("(anna looks at the phone)", "office")) == ("look", "phone", "", "")
     assert told(beat("(anna picks up the phone)", "office")) == ("pick-up", "phone", "", "")
+    assert told(beat("(anna talks on the phone)", "office")) == ("phone", "phone", "", "")
+    assert told(beat("(anna talks on the phone)", "park")) == ("phone", "", "", "phone")
 
 
 def test_two_things_in_a_line_are_told() -> None:

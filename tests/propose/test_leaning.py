@@ -15,7 +15,10 @@ HEAD = 'storyboard "S"\ncharacter anna = woman\ncharacter ben = man\nscene s = {
 
 
 def state_after(place: str, *lines: str) -> SceneState:
-    act = stage_script(HEAD.format(place) + "\n".join(lines) + " / (static full)\n", "s")
+    """After the last line; those before it are people's places, and lines without a camera."""
+    lines = tuple(f"{line} / (static full)" if line.startswith("(") else line for line in lines)
+    last = sum(line.startswith("(") for line in lines) - 1
+    act = stage_script(HEAD.format(place) + "\n".join(lines) + "\n", "s", line=last)
     return tell(act.state, act.line, act.filming, shot=act.line.shots[0]).end
 
 
@@ -43,6 +46,10 @@ def behind(state: SceneState, who: str) -> float:
         ("alley", "(anna leans against the wall)"),
         ("city_street", "(anna leans against the wall)"),
         ("city_street", "(anna leans against the tree)"),
+        ("apartment.kitchen", "(anna leans against the window)"),
+        ("apartment.living", "(anna leans against the armchair)"),
+        ("classroom", "(anna leans against the blackboard)"),
+        ("house.hall", "(anna leans against the wardrobe)"),
     ],
 )
 def test_the_back_is_to_what_one_leans_against(place: str, line: str) -> None:
@@ -50,18 +57,50 @@ def test_the_back_is_to_what_one_leans_against(place: str, line: str) -> None:
     assert behind(state, "anna") == pytest.approx(0.3, abs=0.04)
 
 
-def test_two_lean_beside_each_other_and_one_sits_down_against_the_wall() -> None:
-    script = (
-        HEAD.format("alley") + "anna at door\nben at fence\n(they lean against the wall) / (static full)\n"
-    )
-    act = stage_script(script, "s")
-    state = tell(act.state, act.line, act.filming, shot=act.line.shots[0]).end
+def test_two_lean_beside_each_other() -> None:
+    state = state_after("alley", "anna at door", "ben at fence", "(they lean against the wall)")
     anna, ben = (state.actors[who].position for who in ("anna", "ben"))
     assert math.dist(anna, ben) > 0.4
     assert behind(state, "ben") == pytest.approx(0.3, abs=0.04)
-    sits = state_after("alley", "(ben sits against the wall)")
-    assert sits.actors["ben"].posture == "floor"
-    assert behind(sits, "ben") < 0.3
+
+
+@pytest.mark.parametrize(
+    ("place", "first"),
+    [
+        ("apartment.living", "(anna sits against the wall)"),
+        ("hospital.corridor", "(anna sits against the wall)"),
+        ("alley", "(anna leans against the wall)"),
+    ],
+)
+def test_nobody_sits_down_where_somebody_is(place: str, first: str) -> None:
+    state = state_after(place, first, "(ben walks to anna)", "(ben sits against the wall)")
+    anna, ben = (state.actors[who].position for who in ("anna", "ben"))
+    assert state.actors["ben"].posture == "floor"
+    assert math.dist(anna[:2], ben[:2]) > 0.5
+
+
+@pytest.mark.parametrize(
+    ("place", "where"), [("apartment.kitchen", "anna at door"), ("apartment.living", "anna at tv_stand")]
+)
+def test_nobody_sits_down_in_furniture(place: str, where: str) -> None:
+    state = state_after(place, where, "(anna slides down the wall)")
+    assert 0.1 < behind(state, "anna") < 0.3
+    x, y, _ = state.actors["anna"].position
+    inside = [
+        item.path
+        for item in state.world.objects
+        if item.kind != "room"
+        and item.low[2] < 0.5
+        and item.low[0] < x < item.high[0]
+        and item.low[1] < y < item.high[1]
+    ]
+    assert not inside
+
+
+def test_the_wall_is_one_of_the_room() -> None:
+    state = state_after("apartment.kitchen", "anna at counter_2", "(anna leans against the wall)")
+    kitchen = next(item for item in state.world.objects if item.path == ("kitchen",))
+    assert kitchen.low[0] < state.actors["anna"].position[0] < kitchen.high[0]
 
 
 def test_where_there_is_no_wall_it_is_said() -> None:

@@ -24,6 +24,8 @@ _MOST_ACTION_WORDS = 4
 _MOST_LISTED = 30
 #: `pour jug into glass` and `pour glass from jug` are one: what is in the hand is the second target.
 _INTO = ("to", "in", "into", "on", "onto")
+#: `talk on the phone` is done with it, `look at the phone` to it.
+_BY_WHICH = ("on", "into")
 _KIND_WORDS = {"place": "a place", "object": "a thing", "character": "someone"}
 
 
@@ -67,6 +69,8 @@ class BeatReader:
             return None
         definition = self.catalog.get("action", action)
         rest = phrases.targets_alone(node.words[1 + used :], self._is_name)
+        if getattr(definition, "against", 0.0):
+            rest = phrases.without_walls(rest, self._is_name)
         named = None if definition is None else self._targets(rest, definition)
         link = next((w.text for w in rest[1:] if w.text in words.PREPOSITIONS), "")
         if definition is None or named is None or character is None:
@@ -103,8 +107,7 @@ class BeatReader:
     def between(self, action: str) -> bool:
         """Whether two who do an action both do it to each other if nobody is named: ``they talk``."""
         definition = self.catalog.get("action", action)
-        kinds = tuple(getattr(definition, "target_kinds", ()))
-        return getattr(definition, "group", "") in ("talk", "social") and "character" in kinds
+        return bool(getattr(definition, "mutual", False))
 
     # -- who and what ----------------------------------------------------------------
 
@@ -156,6 +159,9 @@ class BeatReader:
                 continue
             # `look at phone`, where there is a phone, and not `look-at-phone`
             names_something = size > 1 and self._is_name(rest[size - 1])
+            by_it = names_something and rest[size - 2].text in _BY_WHICH
+            if by_it and rest[size - 1].text == self._brought_by(action):
+                return action, size - 1  # `talk on the phone`, with the one that is there
             if not names_something and (size < len(rest) or not self._wants_target(action)):
                 return action, size
             found = action, size  # unless fewer words leave a target: `serve ball`, not `serve-ball`
@@ -201,6 +207,9 @@ class BeatReader:
             return "character" in kinds
         found = self.scope.look_up(said[-1].parts)
         return bool(found) and ("place" in kinds or (found[0].kind != "room" and "object" in kinds))
+
+    def _brought_by(self, action: str) -> str:
+        return str(getattr(self.catalog.get("action", action), "brings", ""))
 
     def _wants_target(self, action: str) -> bool:
         """Whether nothing can be done by it alone."""

@@ -52,10 +52,11 @@ BOTH = ("they", "both")
 #: Whom it is done to: the one who was spoken of last.
 _OBJECTS = ("him", "her", "them")
 _EACH_OTHER = (("each", "other"), ("one", "another"))
+#: A part of the body after ``her``, and no direction.
+_HER_BACK = tuple(("back", word) for word in ("against", "to", "on"))
 #: What is about everywhere, and is named to say where: an action that needs no place needs none of these.
 _EVERYWHERE = (
     "floor",
-    "wall",
     "ground",
     "grass",
     "sky",
@@ -123,6 +124,17 @@ def targets_alone(rest: Words, is_name: Callable[[ast.Name], bool]) -> Words:
     return kept
 
 
+def without_walls(rest: Words, is_name: Callable[[ast.Name], bool]) -> Words:
+    """What follows an action that is done against something, without the wall: it is the nearest one."""
+    kept: Words = ()
+    for word in rest:
+        if is_name(word) or word.text not in ("wall", "walls"):
+            kept = (*kept, word)
+        elif kept and kept[-1].text in PREPOSITIONS:
+            kept = kept[:-1]
+    return kept
+
+
 def _with_names(said: Words, known: Known) -> Words:
     """With names for ``him``, ``them`` and ``it``, and for ``her`` where it is not hers that something is."""
     out: list[ast.Name] = []
@@ -133,6 +145,7 @@ def _with_names(said: Words, known: Known) -> Words:
         if n and tuple(w.text for w in said[n - 1 : n + 1]) in _EACH_OTHER:
             continue
         ends = n + 1 == len(said) or said[n + 1].text in (*PREPOSITIONS, *PARTICLES, *ARTICLES, *ADVERBS)
+        ends = ends and tuple(w.text for w in said[n + 1 : n + 3]) not in _HER_BACK
         meant: tuple[str, ...] = known.it if word.text == "it" else ()
         if word.text in _OBJECTS and (word.text != "her" or ends) and known.them(word.text):
             meant = (known.them(word.text),)

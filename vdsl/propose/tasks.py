@@ -162,7 +162,7 @@ def _leaning(
 ) -> Errand | None:
     """To a place with the back against something."""
     here = state.actors[beat.character].position
-    stop = stop_against(beat.target, state, beat.character, taken, clip.against)
+    stop = stop_against(beat.target, state, beat.character, taken, clip)
     if stop is None:
         report_no_support(beat, report)
         return None

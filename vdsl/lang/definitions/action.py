@@ -20,8 +20,8 @@ from .types import DefinitionBase
 
 TARGET_KINDS = ("place", "object", "character")
 SETTINGS = ("target", "second", "duration", "travel", "stride", "cadence", "gait", "sit", "posture", "needs",
-            "faces", "turn", "apart", "against", "along", "hold", "feeling", "group", "example", "also",
-            "partner", "variant", "brings")  # fmt: skip
+            "faces", "turn", "apart", "against", "along", "mutual", "hold", "feeling", "group", "example",
+            "also", "partner", "variant", "brings")  # fmt: skip
 CHANGES = ("amplitude", "tempo", "mirror", "duration", "stride", "cadence", "gait", "instead", "partner")
 TRAVELS = ("none", "walk", "run", "skip", "crawl")
 #: Which drawer of the library an action lies in.
@@ -70,6 +70,7 @@ class ActionDef(DefinitionBase):
         as long as it takes; rises: stands up again at the end
     apart: metres between two people, 0 for talking distance; feeling: what shows on the face, "" for nothing
     against: metres from what the back is against to the feet, 0 where it is against nothing
+    mutual: of two who both do it each does it to the other, where nobody is named
     needs_hand: left or right, "" for either; group: one of :data:`GROUPS`, "" where it is not said
     example: a line that shows it, as in the language, anna acting and ben the other; props: names of the
         props it needs
@@ -97,6 +98,7 @@ class ActionDef(DefinitionBase):
     rises: bool = False
     apart: float = 0.0
     against: float = 0.0
+    mutual: bool = False
     feeling: str = ""
     group: str = ""
     example: str = ""
@@ -161,8 +163,8 @@ def _settings(
     target, second = word("target", "none", needs), word("second", "none", needs)
     travel = word("travel", "walk", TRAVELS)
     turn = settings["turn"].value_angle(0) if "turn" in settings else 0.0
-    if "hold" in settings:
-        settings["hold"].values()
+    for flag in {"hold", "mutual"} & {*settings}:
+        settings[flag].values()
     posture, example, also = (settings.get(name) for name in ("posture", "example", "also"))
     others = () if also is None else tuple(also.value_word(i, "") for i in range(also.count))
     return ActionDef(
@@ -175,6 +177,7 @@ def _settings(
         rises=posture.flag("back") if posture is not None else False,
         apart=settings["apart"].value_length(0) if "apart" in settings else 0.0,
         against=settings["against"].value_length(0) if "against" in settings else 0.0,
+        mutual="mutual" in settings,
         feeling=word("feeling", "", tuple(FEELINGS)),
         group=word("group", "", GROUPS),
         example=example.value_text(0) if example is not None else "",

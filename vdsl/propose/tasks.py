@@ -141,13 +141,10 @@ def _errand(
     if clip.seat != "down" and math.dist(stop.place, here) < _STANDS_THERE:
         turn = replace(_task(clip, target, second, shot), arrive_heading=stop.heading)
         return Errand(turn if actor.posture == "standing" else _task(clip, target, second, shot), (), stop)
-    people = state.people(but=beat.character) + taken
-    found = ways_through(state.world, here, stop.place, ways, people)
-    if not found:
+    going = _going(_task(clip, target, second, shot), stop, beat, state, taken, ways)
+    if going is None:
         report_unreachable(beat, where, state, here, report)
-        return None
-    task = replace(_task(clip, target, second, shot), arrive_heading=stop.heading)
-    return _with_ways(task, found, stop)
+    return going
 
 
 def _leaning(
@@ -166,15 +163,20 @@ def _leaning(
     if stop is None:
         report_no_support(beat, report)
         return None
-    task = replace(_task(clip, target, None, shot), arrive_heading=stop.heading)
+    task = _task(clip, target, None, shot)
     if math.dist(stop.place, here) < _LEANS_THERE:
-        return Errand(task, (), stop)
-    people = state.people(but=beat.character) + taken
-    found = ways_through(state.world, here, stop.place, ways, people)
-    if not found:
+        return Errand(replace(task, arrive_heading=stop.heading), (), stop)
+    going = _going(task, stop, beat, state, taken, ways)
+    if going is None:
         report_no_support(beat, report)
-        return None
-    return _with_ways(task, found, stop)
+    return going
+
+
+def _going(task: Task, stop: Stop, beat: Beat, state: SceneState, taken: Discs, ways: int) -> Errand | None:
+    """The task with the ways to a place to stand; None where there is none."""
+    here, people = state.actors[beat.character].position, state.people(but=beat.character) + taken
+    found = ways_through(state.world, here, stop.place, ways, people)
+    return _with_ways(replace(task, arrive_heading=stop.heading), found, stop) if found else None
 
 
 def _with_ways(task: Task, found: list[Way], stop: Stop) -> Errand:
@@ -249,14 +251,12 @@ def _moving(
     if stop is None:
         report_unreachable(beat, beat.target, state, here, report)
         return None
-    task = replace(task, arrive_heading=stop.heading)
     if math.dist(stop.place, here) < _STANDS_THERE:
-        return Errand(task, (), stop)
-    found = ways_through(state.world, here, stop.place, ways, people)
-    if not found:
+        return Errand(replace(task, arrive_heading=stop.heading), (), stop)
+    going = _going(task, stop, beat, state, taken, ways)
+    if going is None:
         report_unreachable(beat, beat.target, state, here, report)
-        return None
-    return _with_ways(task, found, stop)
+    return going
 
 
 def _task(

@@ -11,7 +11,7 @@ import math
 import torch
 from torch import Tensor
 
-from .guides import FARTHEST, MARKS, NEAREST, POINTS, SIDE
+from .guides import FARTHEST, NEAREST, POINTS, SIDE, SUBJECT_MARKS
 
 _SHARP = 40.0  # how fast a point goes from in the frame to out of it, by half frames
 _HARD = 12.0  # how sharp bounds of nearness (log) are
@@ -33,7 +33,9 @@ _OTHERS = [POINTS.index(p) for p in ("other_1", "other_2")]
 
 #: Numbers of :func:`composed` of a frame: marks, which points there are, composition, looks, what is seen,
 #: and of each point whether it is covered, and whether it is in the frame.
-COMPOSED = len(MARKS) + len(POINTS) + 12 + len(_TOPS) + len(_LOOKS) + len(_NEARER) + 7 + 2 * len(POINTS)
+COMPOSED = (
+    len(SUBJECT_MARKS) + len(POINTS) + 12 + len(_TOPS) + len(_LOOKS) + len(_NEARER) + 7 + 2 * len(POINTS)
+)
 #: Which of them says whether the eyes are in the frame.
 EYES_INSIDE = COMPOSED - len(POINTS) + POINTS.index("eyes")
 #: Numbers that :func:`over_time` makes of each of a frame's, and :func:`over_window`.
@@ -44,21 +46,22 @@ _APART = 8.0  # what keeps a frame that is not meant from being the least or the
 def composed(told: Tensor, nearness: Tensor) -> Tensor:
     """What film grammar looks at in frames, float32 [B, T, COMPOSED].
 
-    told: their marks [B, T, marks]; nearness: codes of their maps [B, T, SIDE, SIDE]
+    told: their marks [B, T, marks], of which those of the subject count
+    nearness: codes of their maps [B, T, SIDE, SIDE]
 
     Who composes a picture asks for sums and products of marks, as where the face points by where it is, or
     for bounds, as whether a point is within the frame: that is given rather than to be learnt.
     """
-    marks = dict(zip(MARKS, told.unbind(-1), strict=True))
-    common = [(marks[n] - _COMMON[n][0]) / _COMMON[n][1] if n in _COMMON else marks[n] for n in MARKS]
+    names = SUBJECT_MARKS
+    marks = dict(zip(names, told[..., : len(names)].unbind(-1), strict=True))
+    common = [(marks[n] - _COMMON[n][0]) / _COMMON[n][1] if n in _COMMON else marks[n] for n in names]
     right, up, nearer = (
         torch.stack([marks[f"{what}_{point}"] for point in POINTS], -1) for what in ("right", "up", "covered")
     )
     there = right.isfinite()
     right, up = right.nan_to_num(3.0), up.nan_to_num(3.0)
-    inside = torch.sigmoid(_SHARP * (1 - right.abs())) * torch.sigmoid(_SHARP * (1 - up.abs())) * there
-    ahead = (1 - (-nearer.nan_to_num(-1.0)).exp()) * marks["distance"].exp().unsqueeze(-1)  # metres
-    covered = torch.sigmoid(_STEEP * (ahead - _CLEAR)) * inside
+    inside = in_frame(right, up) * there
+    covered = hidden(nearer, marks["distance"].unsqueeze(-1)) * inside
     own = (1 - (-marks["before_eyes"].nan_to_num(-1.0)).exp()) * marks["distance"].exp()
     at = dict(zip(POINTS, up.unbind(-1), strict=True))
     eyes = POINTS.index("eyes")
@@ -81,6 +84,20 @@ def composed(told: Tensor, nearness: Tensor) -> Tensor:
     looks, share = _foreground(nearness, marks["distance"])
     parts = [torch.stack(common, -1).nan_to_num(), there.float(), torch.stack(composition, -1)]
     return torch.cat([*parts, looks, share, _seen(inside, covered), covered, inside], -1)
+
+
+def in_frame(right: Tensor, up: Tensor) -> Tensor:
+    """Whether points are in the frame, 0..1, of their places in half frames from its middle."""
+    return torch.sigmoid(_SHARP * (1 - right.abs())) * torch.sigmoid(_SHARP * (1 - up.abs()))
+
+
+def hidden(nearer: Tensor, distance: Tensor) -> Tensor:
+    """Whether what is seen in the place of points is before them, 0..1.
+
+    nearer: by how much it is nearer (log), NaN where not known; distance: log metres of the points
+    """
+    ahead = (1 - (-nearer.nan_to_num(-1.0)).exp()) * distance.exp()  # metres
+    return torch.sigmoid(_STEEP * (ahead - _CLEAR))
 
 
 def _seen(inside: Tensor, covered: Tensor) -> Tensor:

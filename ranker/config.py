@@ -28,7 +28,8 @@ class ModelConfig:
         judge, 0 for none
     first_fault, faults: which of the measures, one after the other, say by log odds that a shot has a fault
     guides: width of what is made of guides, 0 for none; meant: whether the frames of these that are meant to
-        show the subject are found, and looked at by themselves
+        show the subject are found, and looked at by themselves; people: whether those in a shot are looked at
+        one by one
     liking: what log odds of being liked best count, by which shots are put in order; 0 where that is not
         taught, and those of being good are gone by
     """
@@ -49,6 +50,7 @@ class ModelConfig:
     marks: int = 0
     guides: int = 0
     meant: bool = False
+    people: bool = False
     liking: float = 0.0
 
     @property
@@ -188,7 +190,7 @@ def model_from_json(values: dict[str, Any]) -> ModelConfig:
         further = ("motion", "measures", "first_fault", "faults", "marks", "guides")
         rest |= {k: int(values.get(k, 0)) for k in further}
         rest["inner"] = int(values.get("inner", rest["size"]))
-        rest |= {k: bool(values.get(k, False)) for k in ("moments", "meant")}
+        rest |= {k: bool(values.get(k, False)) for k in ("moments", "meant", "people")}
         rest |= {"backbone": str(values["backbone"]), "liking": float(values.get("liking", 0.0))}
         config = ModelConfig(**words, **rest)
     except (KeyError, TypeError, ValueError) as error:

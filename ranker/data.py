@@ -435,7 +435,10 @@ def _guides(path: Path, clips: int, frames: int) -> Guides | None:
         np.load(path.with_suffix(".flow.npy"), allow_pickle=False),
         np.load(path.with_suffix(".marks.npy"), allow_pickle=False),
     )
-    found.check(clips, frames, frames)
+    try:
+        found.check(clips, frames, frames)
+    except ValueError as error:
+        raise ValueError(f"{error}; of another kind than are looked at now, or damaged") from error
     return found
 
 

@@ -14,14 +14,17 @@ from torch import Tensor, nn
 
 from .composed import COMPOSED, EYES_INSIDE, SUMMED, WINDOWED, composed, over_time, over_window
 from .guides import CHANNELS, FLOW, MARKS, SIDE, Guides, pairs
+from .people import PEOPLED, SUMMED_UP, people_of
 
 _MAPS, _WIDE, _FRAME = 128, 256, 160  # numbers that describe the maps of a frame, and all of a frame
+_ALL, _SOME = 64, 24  # numbers of who learns from all that is told of people, and that come of it a frame
 _PATCH, _PATCHES = 4, 32  # cells along what is first summed up of a map, and numbers that describe such
 _PAIR, _MOVED = 64, 256  # and a pair of frames, all pairs
 _PACES = 3  # numbers of how fast a camera turns
 _HALF_SENSOR, _SLOW = 18.0, 0.2  # millimetres; radians a second
 _ASKED, _MOMENTS = 64, 8  # of who tells which frames are meant: its width, and places in time it tells apart
 _LEAST = 0.1  # of the deviation of all shots, that good ones are taken to have at least
+_SAME = 1e-4  # deviation of numbers that are all the same but for rounding
 _FINE = 20.0  # by what motion is multiplied, so that slow ones are seen
 
 
@@ -70,7 +73,7 @@ class Evened(nn.Module):
         one's."""
         self.middle.copy_(good.mean(0))
         spread = torch.maximum(good.std(0, correction=0), _LEAST * every.std(0, correction=0))
-        self.spread.copy_(torch.where(spread > 1e-6, spread, torch.ones_like(spread)))
+        self.spread.copy_(torch.where(spread > _SAME, spread, torch.ones_like(spread)))
 
     def forward(self, numbers: Tensor) -> Tensor:
         return torch.asinh((numbers - self.middle) / self.spread)
@@ -96,6 +99,26 @@ class Window(nn.Module):
         return self.last(seen).squeeze(2)
 
 
+class People(nn.Module):
+    """A description of who is in a frame, one by one, and of how the camera goes: [B, T, described].
+
+    What sums everybody up goes on as it is, beside what is learnt of each.
+    """
+
+    described = _SOME + SUMMED_UP
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.evened = Evened(PEOPLED)
+        first = (nn.Linear(PEOPLED, _ALL), nn.ReLU())
+        self.each = nn.Sequential(*first, nn.Linear(_ALL, _SOME), nn.ReLU())
+
+    def forward(self, told: Tensor) -> Tensor:
+        """told: marks of frames, [B, T, marks]"""
+        numbers = self.evened(people_of(told))
+        return torch.cat([self.each(numbers), numbers[..., -SUMMED_UP:]], 2)
+
+
 class Description(NamedTuple):
     """What a network says of B shots by their guides: of frames float32 [B, T, frame], and of shots
     [B, shot]; meant: log odds [B, T] that a frame is meant to show the subject, [B, 0] where that is not told
@@ -110,10 +133,10 @@ class GuideNet(nn.Module):
     """A description of every frame by its maps and marks, and of a shot by these and the camera's motion.
 
     frames: of a whole shot; meant: whether it tells which of them are meant to show the subject, and sums
-        these up as well
+        these up as well; people: whether it looks at people one by one
     """
 
-    def __init__(self, frames: int, meant: bool = False) -> None:
+    def __init__(self, frames: int, meant: bool = False, people: bool = False) -> None:
         super().__init__()
         first = (nn.Conv2d(len(CHANNELS), _PATCHES, _PATCH, _PATCH), nn.ReLU())
         second = (nn.Conv2d(_PATCHES, 2 * _PATCHES, 3, 2, 1), nn.GroupNorm(8, 2 * _PATCHES), nn.ReLU())
@@ -127,7 +150,9 @@ class GuideNet(nn.Module):
             *(nn.Linear(32 * (FLOW // 2) ** 2, _PAIR), nn.ReLU()),
         )
         self.moved = nn.Sequential(nn.Linear(_PAIR * len(pairs(frames)), _MOVED), nn.ReLU(), nn.Dropout(0.1))
-        self.frame, self.shot = _FRAME + COMPOSED, SUMMED * (_FRAME + COMPOSED) + _MOVED + _PACES
+        self.people = People() if people else None
+        self.frame = _FRAME + COMPOSED + (0 if self.people is None else self.people.described)
+        self.shot = SUMMED * self.frame + _MOVED + _PACES
         self.window: Window | None = None
         if meant:
             self.window = Window(self.frame, _MOVED + _PACES)
@@ -139,6 +164,9 @@ class GuideNet(nn.Module):
         numbers = composed(seen.marks, seen.maps[..., CHANNELS.index("nearness")])
         chosen = good if good.any() else torch.ones_like(good)
         self.evened.fit(numbers[chosen].flatten(0, 1), numbers.flatten(0, 1))
+        if self.people is not None:
+            everybody = people_of(seen.marks)
+            self.people.evened.fit(everybody[chosen].flatten(0, 1), everybody.flatten(0, 1))
 
     def forward(self, seen: Guided) -> Description:
         batch, count = seen.maps.shape[:2]
@@ -148,7 +176,10 @@ class GuideNet(nn.Module):
             inside = marks[..., EYES_INSIDE]
             marks = self.evened(marks)
         both = torch.cat([self.maps(maps).view(batch, count, _MAPS), marks], 2)
-        frames = torch.cat([self.marks(both), marks], 2)
+        parts = [self.marks(both), marks]
+        if self.people is not None:
+            parts.append(self.people(seen.marks))
+        frames = torch.cat(parts, 2)
         flow = seen.flow.flatten(0, 1).movedim(-1, 1).float().nan_to_num()
         fine = torch.asinh(flow * _FINE) / 3
         moved = self.pairs(torch.cat([flow, fine], 1)).view(batch, _PAIR * seen.flow.shape[1])

@@ -38,19 +38,38 @@ POINTS = (
     "other_1",
     "other_2",
 )
-#: Marks of a frame. Of each point how far it is to the right and to the top, in half frames from the middle,
-#: no further than 3, and by how much nearer than the point (log) what is seen in its place is, 0 where that
-#: is the subject itself. Where the face points, to the right, up and away. Logarithms: of the focal length
-#: (mm) by the distance of the waist, of that distance (metres) and of the focal length. Metres of the camera
-#: above the eyes; radians it leans to the right; the logarithm of the seconds the shot lasts. By how much
-#: nearer than the eyes (log) what is seen in their place is, the subject itself too, as a hand before the
-#: face; and 1 where walls of the set are left out, which the camera would stand behind, 0 else. In the mirror
-#: those of ``right`` change their sign.
-MARKS = (
+#: So many people are told of one by one: those a shot is about if they are several, or who are in a place,
+#: who acts first; then others. Of each the points of these names.
+PEOPLE = 3
+PERSON_POINTS = ("crown", "eyes", "pocket", "waist", "feet")
+#: All points marks are of, in their order: the subject's, then those of the people.
+ALL_POINTS = (*POINTS, *(f"{point}_{k + 1}" for k in range(PEOPLE) for point in PERSON_POINTS))
+#: Marks that every shot has, whoever is in it. Of each point how far it is to the right and to the top, in
+#: half frames from the middle, no further than 3, and by how much nearer than the point (log) what is seen in
+#: its place is, 0 where that is the subject itself. Where the face points, to the right, up and away.
+#: Logarithms: of the focal length (mm) by the distance of the waist, of that distance (metres) and of the
+#: focal length. Metres of the camera above the eyes; radians it leans to the right; the logarithm of the
+#: seconds the shot lasts. By how much nearer than the eyes (log) what is seen in their place is, the subject
+#: itself too, as a hand before the face; and 1 where walls of the set are left out, which the camera would
+#: stand behind, 0 else.
+SUBJECT_MARKS = (
     *(f"{what}{point}" for point in POINTS for what in ("right_", "up_", "covered_")),
     *("right_face", "up_face", "away_face", "size", "distance", "lens", "over", "right_roll", "seconds"),
     *("before_eyes", "open"),
 )
+#: Marks of who is told of one by one, and of how the camera goes. Of each point the same as above, with their
+#: own body and that of others alike counting as what is seen in its place; where the face points to the
+#: right, and the cosine between it and the way to the camera; how far the eyes are away (log metres); and 1
+#: where the shot is about them, 0 where not. Then how fast the camera goes, turns, and how unevenly it goes
+#: at most between half the way from the judged frame before and half the way to the next: square roots of
+#: metres a second, of radians a second, and of metres by the third power of a second.
+PEOPLE_MARKS = (
+    *(f"{what}{point}" for point in ALL_POINTS[len(POINTS) :] for what in ("right_", "up_", "covered_")),
+    *(f"{what}_{k + 1}" for k in range(PEOPLE) for what in ("right_face", "turned", "distance", "about")),
+    *("pace", "turning", "jerk"),
+)
+#: All marks of a frame. In the mirror those of ``right`` change their sign.
+MARKS = (*SUBJECT_MARKS, *PEOPLE_MARKS)
 _TURNED = np.array([name.startswith("right") for name in MARKS])
 _HANDS = {"l": "r", "r": "l"}  # a left hand in the mirror is a right one
 _SWAPPED = [MARKS.index(n[:-1] + _HANDS[n[-1]] if n.endswith(("_l", "_r")) else n) for n in MARKS]

@@ -12,17 +12,18 @@ from pathlib import Path
 import torch
 from torch import Tensor
 
-from .composed import WINDOWED
+from .composed import SUMMED, WINDOWED
 from .config import ModelConfig
 from .errors import RankerError
+from .guided import GuideNet, People
 from .model import ShotRanker
 from .weights import load_tensors
 
 #: Parameters with an entry for each number of L_h: along which axis, and which numbers these are.
 _TOLD = {"reader": 0, "reader_guided": 0, "reader_moved": 0, "straight": 0, "reasons": 1, "reasons_guided": 1}
 _FAULTS = ("faults", "faults_guided")
-#: Those that read all that describes a shot by its guides.
-_READ = ("gathered.0.weight", "straight.weight")
+#: What a column reads: a part, which of several such, and which number of it.
+_Column = tuple[str, int, int]
 
 
 def take_over(
@@ -41,15 +42,13 @@ def take_over(
             f"{folder}: are weights of a {others.backbone}, and no {words.backbone} can start from them"
         )
     told: list[str] = list(card.data.get("hints") or ())
-    if words.meant != others.meant and model.guided is not None:
-        more = WINDOWED * model.guided.frame  # what is read of these frames comes last
-        for name in (name for name in _READ if name in other and name in ours):
-            given, wide = other[name], ours[name].shape[1]
-            if words.meant and given.shape[1] + more == wide:
-                other[name] = _widened(given, wide)
-                ours[name][:, given.shape[1] :] = 0.0  # so that it says nothing at first
-            elif others.meant and given.shape[1] == wide + more:
-                other[name] = given[:, :wide]
+    if model.guided is not None and (words.meant, words.people) != (others.meant, others.people):
+        before, now = (_columns(model.guided, words, config) for config in (others, words))
+        for name in (name for name in now if name in other and name in ours):
+            if other[name].shape[1] != len(before[name]) or ours[name].shape[1] != len(now[name]):
+                continue
+            other[name], new = _placed(other[name], before[name], now[name])
+            ours[name][:, new] = 0.0  # so that it says nothing at first
     if told != list(hints) and len(told) == others.measures and len(hints) == words.measures and told:
         other = {k: _in_order(k, v, ours.get(k), (told, others), (hints, words)) for k, v in other.items()}
     fit = {k: v for k, v in other.items() if k in ours and v.shape == ours[k].shape}
@@ -60,11 +59,34 @@ def take_over(
     return card.sha256, fit
 
 
-def _widened(value: Tensor, columns: int) -> Tensor:
-    """A matrix with so many columns, NaN in those that are new."""
-    out = value.new_full((value.shape[0], columns), torch.nan)
-    out[:, : value.shape[1]] = value
-    return out
+def _columns(guided: GuideNet, own: ModelConfig, config: ModelConfig) -> dict[str, list[_Column]]:
+    """What the columns of matrices that read what is told by guides are of, in a network of that config.
+
+    guided: that part of a network whose config is ``own``
+    """
+    frame = guided.frame + (config.people - own.people) * People.described
+    window = WINDOWED if own.meant else 0
+    rest = guided.shot - (SUMMED + window) * guided.frame
+    described = [("frame", 0, i) for i in range(frame)]
+    shot = [("summed", k, i) for k in range(SUMMED) for i in range(frame)]
+    shot += [("moved", 0, i) for i in range(rest)]
+    if config.meant:
+        shot += [("meant", k, i) for k in range(WINDOWED) for i in range(frame)]
+    found = {"gathered.0.weight": shot, "straight.weight": shot, "marker_guided.weight": described}
+    if guided.window is not None:
+        more = guided.window.frame.in_features - guided.frame
+        found["guided.window.frame.weight"] = [*described, *(("moment", 0, i) for i in range(more))]
+    return found
+
+
+def _placed(value: Tensor, before: list[_Column], now: list[_Column]) -> tuple[Tensor, list[int]]:
+    """A matrix with the columns of now, NaN in those that are new; which these are."""
+    places = {column: k for k, column in enumerate(before)}
+    from_ = [places.get(column, -1) for column in now]
+    new = [k for k, place in enumerate(from_) if place < 0]
+    out = value[:, from_]
+    out[:, new] = torch.nan
+    return out, new
 
 
 def _in_order(

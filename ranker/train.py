@@ -96,6 +96,7 @@ def train(
         marks=len(data.frame_hints[0]) if config.hint_weight and data.hints[0] else 0,
         guides=config.guides if data.guided is not None else 0,
         meant=_tells_meant(config, data),
+        people=config.guides > 0 and data.guided is not None,
         liking=LIKING if config.order_weight and np.isfinite(data.liked).any() else 0.0,
     )
     if not shape.guides and any(phase.size == 0 for phase in config.phases):

@@ -13,7 +13,7 @@ from runtime.body.skeleton import JOINT
 from vdsl.cinema.track import CameraTrack, camera_axes, look_at_rotation, project
 from vdsl.pipeline.acts import Act
 from vdsl.pipeline.filming import SEGMENTS, Camerawork, segment_frames
-from vdsl.pipeline.guides import About, about_of, roles_of
+from vdsl.pipeline.guides import About, about_of, paces_of, roles_of
 from vdsl.pipeline.hints import frame_hints_of
 from vdsl.propose.subjects import subject_of
 from vdsl.propose.types import CameraProposal, ProposalGrid, StoryProposal
@@ -154,3 +154,64 @@ def _from_behind_ben(camera: CameraProposal, story: StoryProposal, at: np.ndarra
     away = (ben - anna) / np.linalg.norm(ben - anna, axis=1, keepdims=True)
     place = ben + 0.5 * away
     return replace(camera.track, position=place, look_at=anna, rotation=look_at_rotation(place, anna))
+
+
+def test_people_are_told_of_one_by_one(camerawork: Camerawork) -> None:
+    act, grid = filmed("static medium eye-level two-shot")
+    shot, camera = act.line.shots[0], grid.cameras[0]
+    story = next(s for s in grid.story if s.index == camera.story)
+    at = segment_frames(story.frames)
+    members = subject_of(shot, story, act.filming).members
+    about = about_of(shot, grid, act.filming, act.staged)
+    seen = camerawork.judge_frames(act.staged, "board", grid.story, (camera,), about=[about])
+    assert seen.guides is not None
+    told = {name: seen.guides.marks[0, :, k].astype(float) for k, name in enumerate(MARKS)}
+    assert [one.name for one in members] == ["anna", "ben"]  # who acts comes first
+    for k, one in enumerate(members, 1):
+        xy, _ = project(
+            one.landmarks["eyes"][at][:, None],
+            camera.track.position[at],
+            camera_axes(camera.track.rotation[at]),
+            camera.track.focal[at],
+            camera.track.sensor,
+        )
+        np.testing.assert_allclose(told[f"right_eyes_{k}"], np.clip(2 * xy[:, 0, 0] - 1, -3, 3), atol=3e-3)
+        away = camera.track.position[at] - one.landmarks["eyes"][at]
+        distance = np.linalg.norm(away, axis=1)
+        np.testing.assert_allclose(told[f"distance_{k}"], np.log(distance), atol=3e-3)
+        np.testing.assert_allclose(
+            told[f"turned_{k}"], (one.face[at] * away).sum(axis=1) / distance, atol=3e-3
+        )
+        assert (told[f"about_{k}"] == 1).all()
+    assert np.isnan(told["right_eyes_3"]).all()
+    assert np.isnan(told["distance_3"]).all()
+
+    behind = replace(camera, track=_from_behind_ben(camera, story, at))
+    hidden = camerawork.judge_frames(act.staged, "board", grid.story, (behind,), about=[about])
+    assert hidden.guides is not None
+    before, own = (hidden.guides.marks[0, :, MARKS.index(f"covered_eyes_{k}")].astype(float) for k in (1, 2))
+    assert np.nanmin(before) > 0.5  # behind the other, though both are what the shot is about
+    assert np.nanmax(own) < 0.35
+
+    act, grid = filmed("static medium eye-level over-shoulder ben")
+    about = about_of(act.line.shots[0], grid, act.filming, act.staged)
+    seen = camerawork.judge_frames(act.staged, "board", grid.story, grid.cameras[:1], about=[about])
+    assert seen.guides is not None
+    assert (seen.guides.marks[0, :, MARKS.index("about_1")] == 0).all()  # ben, whom it is not about
+    assert (seen.guides.marks[0, :, MARKS.index("distance_1")] < 1.0).all()
+
+
+def test_how_a_camera_goes_is_told() -> None:
+    _, grid = filmed("static full eye-level")
+    track = grid.cameras[0].track
+    count, fps = len(track.position), 24.0
+    at, seconds = segment_frames(count), np.arange(count) / fps
+    straight = np.stack([0.5 * seconds, 0 * seconds, 0 * seconds], axis=1)
+    turned = np.stack([0 * seconds, 0 * seconds, 0.3 * seconds], axis=1)
+    even = paces_of(replace(track, position=straight, rotation=turned), at, count / fps)
+    np.testing.assert_allclose(even, np.tile(np.sqrt((0.5, 0.3, 0.0)), (len(at), 1)), atol=2e-3)
+    jolted = straight.copy()
+    jolted[at[3] + 1 :, 2] += 0.05
+    jerks = paces_of(replace(track, position=jolted, rotation=turned), at, count / fps)[:, 2]
+    assert jerks[3] > 10
+    assert max(*jerks[:2], *jerks[5:]) < 0.1

@@ -16,7 +16,7 @@ from ranker.config import Phase
 from ranker.data import Dataset, ShardWriter
 from ranker.errors import RankerError
 from ranker.guided import Evened, Guided, _paces
-from ranker.guides import CHANNELS, FLOW, MARKS, POINTS, SIDE, Guides, joined, pairs
+from ranker.guides import CHANNELS, FLOW, MARKS, POINTS, SIDE, SUBJECT_MARKS, Guides, joined, pairs
 from ranker.infer import Ranker
 from ranker.model import ShotRanker, frame_times, normalised
 from ranker.train import train
@@ -33,6 +33,7 @@ def guides_of(rng: np.random.Generator, good: bool, movement: int) -> Guides:
     flow[..., 0] += (0, 0.2, -0.2)[movement]
     marks = rng.normal(0, 0.1, (1, FRAMES, len(MARKS))).astype(np.float16)
     marks[..., MARKS.index("right_other_2")] = np.nan
+    marks[..., len(SUBJECT_MARKS) :] = np.nan  # there is nobody else
     return Guides(maps, flow.astype(np.float16), marks)
 
 
@@ -132,7 +133,8 @@ def test_composition_is_what_marks_say() -> None:
     covered = found[0, :, EYES_INSIDE - len(POINTS)]
     assert covered[0] < 0.05
     assert covered[1] > 0.95
-    there, begin = found[0, 0, len(MARKS) :], len(MARKS) + len(POINTS)
+    own = len(SUBJECT_MARKS)
+    there, begin = found[0, 0, own:], own + len(POINTS)
     assert there[: len(POINTS)].tolist() == [float(name != "feet") for name in POINTS]
     lead, thirds, aside, hat, above = found[0, :, begin : begin + 5].T
     torch.testing.assert_close(lead, torch.tensor([0.4, -0.32, 1.2]))

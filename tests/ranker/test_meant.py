@@ -14,7 +14,7 @@ from ranker.composed import WINDOWED, over_window
 from ranker.config import Phase
 from ranker.data import Dataset, ShardWriter
 from ranker.guided import Guided
-from ranker.guides import CHANNELS, FLOW, MARKS, SIDE, Guides, joined, pairs
+from ranker.guides import CHANNELS, FLOW, MARKS, SIDE, SUBJECT_MARKS, Guides, joined, pairs
 from ranker.model import ShotRanker, frame_times
 from ranker.starting import take_over
 from ranker.train import train
@@ -33,6 +33,7 @@ def guides_of(rng: np.random.Generator, ends: bool, good: bool) -> Guides:
     flow = rng.normal(0, 0.003, (1, len(pairs(FRAMES)), FLOW, FLOW, 2))
     flow[..., 0] += 0.2 if ends else -0.2
     marks = np.zeros((1, FRAMES, len(MARKS)))
+    marks[..., len(SUBJECT_MARKS) :] = np.nan  # there is nobody else
     return Guides(maps, flow.astype(np.float16), marks.astype(np.float16))
 
 
@@ -121,3 +122,27 @@ def test_a_network_that_tells_them_starts_from_weights_that_do_not(tmp_path: Pat
     torch.testing.assert_close(now.told, before.told, atol=1e-4, rtol=1e-4)
     assert before.meant.shape == (2, 0)
     assert now.meant.shape == (2, FRAMES)
+
+
+def test_a_network_that_looks_at_people_starts_from_weights_that_do_not(tmp_path: Path) -> None:
+    torch.manual_seed(0)
+    shape = model_config(guides=16, moments=True, marks=2, measures=3, meant=True)
+    other = ShotRanker(shape).eval()
+    torch.nn.init.normal_(other.straight.weight, std=0.02)
+    save_weights(tmp_path, other)
+    other = load_model(tmp_path)[0]
+    ours = ShotRanker(replace(shape, people=True)).eval()
+    _, taken = take_over(ours, tmp_path)
+    assert taken["straight.weight"].isnan().any()
+    rng = np.random.default_rng(3)
+    guides = joined([guides_of(rng, True, True), guides_of(rng, False, False)])
+    guides.marks[..., len(SUBJECT_MARKS) :] = rng.normal(0, 1, (2, FRAMES, len(MARKS) - len(SUBJECT_MARKS)))
+    times = frame_times(shape)
+    nothing = torch.zeros(2, FRAMES, ours.described)
+    with torch.inference_mode():
+        before, now = (
+            m.judge(nothing, times.expand(2, -1), None, Guided.of(guides, times), pictures=False)
+            for m in (other, ours)
+        )
+    for name in ("logit", "told", "meant", "mapped"):
+        torch.testing.assert_close(getattr(now, name), getattr(before, name), atol=1e-4, rtol=1e-4)

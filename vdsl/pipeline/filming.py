@@ -15,7 +15,7 @@ from runtime.raster.types import STYLES, Camera, Frames, Views
 from ..cinema.track import CameraTrack, camera_axes
 from ..propose.types import CameraProposal, StoryProposal
 from ..stage.assemble import StagedScene, palettes
-from .guides import About, Places, guides_of, pointed, roles_of
+from .guides import About, guides_of, paces_of, pointed, roles_of
 from .shutter import between, camera_between, exposed_frames, moments_needed
 
 #: The discriminator looks at this many frames of this size (the paper's section 3.3).
@@ -78,7 +78,15 @@ class Camerawork:
         if about is None:
             drawn = renderer.render(moments, views, size, pictures=pictures)
             return Seen(drawn.color.reshape(len(cameras), len(which), *drawn.color.shape[1:]), None)
-        places = [_at(subject.places[c.story], which) for c, subject in zip(cameras, about, strict=True)]
+        whole = [subject.places[c.story] for c, subject in zip(cameras, about, strict=True)]
+        judged = [segment_frames(len(p.points)) for p in whole]
+        places = [p.at(frames[list(which)]) for p, frames in zip(whole, judged, strict=True)]
+        paces = np.concatenate(
+            [
+                paces_of(c.track, frames, p.seconds)[list(which)]
+                for c, p, frames in zip(cameras, whole, judged, strict=True)
+            ]
+        )
         roles = np.repeat(roles_of(staged, about), len(which), axis=0)
         at = pointed(views.camera, places, size)
         drawn = renderer.render(moments, views, size, roles=roles, pictures=pictures, pixels=at.pixels)
@@ -86,7 +94,7 @@ class Camerawork:
         assert drawn.probed is not None
         frames = drawn.color.reshape(len(cameras), len(which), *drawn.color.shape[1:])
         opened = [bool(c.hidden_walls.any()) for c in cameras]
-        told = guides_of(drawn.guides, drawn.probed, at, views.camera, places, opened, which, SEGMENTS)
+        told = guides_of(drawn.guides, drawn.probed, at, views.camera, places, opened, paces, which, SEGMENTS)
         return Seen(frames, told)
 
     def judge_ids(
@@ -188,12 +196,6 @@ class Camerawork:
             self._renderers[style].load(staged.render)
             self._loaded[style] = staged
         return self._renderers[style]
-
-
-def _at(places: Places, which: Sequence[int]) -> Places:
-    """The same in some of the judged frames."""
-    at = segment_frames(len(places.points))[list(which)]
-    return Places(places.points[at], places.face[at], places.seconds)
 
 
 def _take_detail(

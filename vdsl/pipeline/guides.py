@@ -7,19 +7,31 @@ would be with a wider frame: nothing of what was asked for, no measure and no ju
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ranker.guides import CHANNELS, FARTHEST, FLOW, MARKS, POINTS, SIDE, Guides, pairs
+from ranker.guides import (
+    ALL_POINTS,
+    CHANNELS,
+    FARTHEST,
+    FLOW,
+    MARKS,
+    PEOPLE,
+    PERSON_POINTS,
+    POINTS,
+    SIDE,
+    Guides,
+    pairs,
+)
 from ranker.guides import NEAREST as NEAREST_TOLD
 from runtime.raster.types import FAR, GUIDE_SIDE, NEAREST, OTHERS, SUBJECT, Camera, Probed
 
-from ..cinema.track import project
+from ..cinema.track import CameraTrack, project
 from ..lang.ir import Shot
-from ..propose.subjects import Filming, find_object, subject_of
+from ..propose.subjects import Filming, find_object, people_beside, subject_of
 from ..propose.types import ProposalGrid
 from ..stage.assemble import StagedScene
 
@@ -33,13 +45,21 @@ _BEHIND = 0.05  # of a ray's length ahead: what is nearer to the plane of the le
 class Places:
     """Where in a performance of T frames is what a camera is about.
 
-    points: float32 [T, len(POINTS), 3], NaN where there is no such point; face: [T, 3], its direction
+    points: float32 [T, len(ALL_POINTS), 3], NaN where there is no such point; face: [T, 3], its direction
+    faces: [T, PEOPLE, 3], those of the people who are told of one by one, NaN where there is none
+    meant: [PEOPLE], 1 where the camera is about them, 0 where not
     seconds: how long the performance is
     """
 
     points: NDArray[np.float32]
     face: NDArray[np.float32]
+    faces: NDArray[np.float32]
+    meant: NDArray[np.float32]
     seconds: float
+
+    def at(self, frames: NDArray[np.integer]) -> Places:
+        """The same in some of the frames."""
+        return replace(self, points=self.points[frames], face=self.face[frames], faces=self.faces[frames])
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,14 +75,21 @@ def about_of(shot: Shot, grid: ProposalGrid, filming: Filming, staged: StagedSce
     places = {}
     for story in grid.story:
         subject = subject_of(shot, story, filming)
-        points = np.full((story.frames, len(POINTS), 3), np.nan, np.float32)
+        points = np.full((story.frames, len(ALL_POINTS), 3), np.nan, np.float32)
         for k, name in enumerate(POINTS):
             if name in subject.landmarks:
                 points[:, k] = subject.landmarks[name]
         for name, path in zip(("other_1", "other_2"), story.interest, strict=False):
             points[:, POINTS.index(name)] = path
+        faces, meant = np.full((story.frames, PEOPLE, 3), np.nan, np.float32), np.zeros(PEOPLE, np.float32)
+        own, others = people_beside(subject, shot, story, filming)
+        for k, one in enumerate((*own, *others)[:PEOPLE]):
+            first = len(POINTS) + k * len(PERSON_POINTS)
+            for n, name in enumerate(PERSON_POINTS):
+                points[:, first + n] = one.landmarks[name]
+            faces[:, k], meant[k] = one.face, float(k < len(own))
         face = subject.face.astype(np.float32)
-        places[story.index] = Places(points, face, story.frames / filming.fps)
+        places[story.index] = Places(points, face, faces, meant, story.frames / filming.fps)
     return About(_objects_of(shot, grid, filming, staged), places)
 
 
@@ -123,6 +150,7 @@ def guides_of(
     camera: Camera,
     places: Sequence[Places],
     opened: Sequence[bool],
+    paces: NDArray[np.floating],
     which: Sequence[int],
     whole: int,
 ) -> Guides:
@@ -130,6 +158,7 @@ def guides_of(
 
     drawn: uint8 [P k, SIDE, SIDE, 6] of the renderer; probed: [P k, points], what it saw ``at`` the points
     camera: of these P k pictures; places: [P] in these k frames; opened: [P], whether walls are left out
+    paces: [P k, 3], as :func:`paces_of` tells them
     which: the k frames they are, of ``whole``
     """
     shots = len(places)
@@ -143,11 +172,37 @@ def guides_of(
     flow = np.full((shots, len(matched), FLOW, FLOW, 2), np.nan, np.float16)
     if count == whole:
         flow[:] = _flow(_nearness(maps[..., CHANNELS.index("nearness")]), camera, shots, matched)
-    return Guides(maps, flow, _marks(probed, at, camera, places, opened))
+    return Guides(maps, flow, _marks(probed, at, camera, places, opened, paces))
+
+
+def paces_of(track: CameraTrack, at: NDArray[np.integer], seconds: float) -> NDArray[np.float64]:
+    """How fast a camera goes, turns, and how unevenly it goes, about each of the frames ``at``: [k, 3].
+
+    At most between half the way from the frame before and half the way to the next, as ``PEOPLE_MARKS`` says.
+    """
+    frames = len(track.position)
+    fps = frames / seconds
+    step = np.linalg.norm(np.diff(track.position, axis=0), axis=1) * fps
+    turn = np.diff(track.rotation, axis=0) * fps
+    turning = np.hypot(turn[:, 1], turn[:, 2] * np.cos(track.rotation[:-1, 1]))
+    jerk = np.linalg.norm(np.diff(track.position, 3, axis=0), axis=1) * fps**3
+    halves = (at[1:] + at[:-1]) // 2
+    begins, ends = np.concatenate([at[:1], halves]), np.concatenate([halves, at[-1:]])
+    out = np.zeros((len(at), 3))
+    for k, values in enumerate((step, turning, jerk)):
+        for n, (begin, end) in enumerate(zip(begins, ends, strict=True)):
+            some = values[begin : max(end, begin + 1)]
+            out[n, k] = np.sqrt(some.max()) if len(some) else 0.0
+    return out
 
 
 def _marks(
-    probed: Probed, at: Pointed, camera: Camera, places: Sequence[Places], opened: Sequence[bool]
+    probed: Probed,
+    at: Pointed,
+    camera: Camera,
+    places: Sequence[Places],
+    opened: Sequence[bool],
+    paces: NDArray[np.floating],
 ) -> NDArray[np.float16]:
     """float16 [P, T, len(MARKS)]; probed: what is seen where the points are, [P T, points]."""
     shots, near = len(places), probed.near
@@ -160,7 +215,8 @@ def _marks(
     own = np.log(FAR / np.maximum(at.depth, NEAREST, where=inside, out=np.ones_like(at.depth)))
     seen = np.log(FAR * np.clip(near, 1 / FAR, 1 / NEAREST))
     before = np.where(inside, np.where(near > 0, seen, -1.0) - own, np.nan)
-    covered = np.where(inside & (probed.role == SUBJECT), 0.0, before)  # nobody stands in their own way
+    own_points = np.arange(len(ALL_POINTS)) < len(POINTS)  # where nobody stands in their own way
+    covered = np.where(inside & own_points & (probed.role == SUBJECT), 0.0, before)
     told = np.stack([place[..., 0], place[..., 1], covered], axis=-1)
     waist, eyes = (points[:, POINTS.index(name)] for name in ("waist", "eyes"))
     away = np.maximum(np.linalg.norm(waist - position, axis=-1), 0.2)
@@ -169,9 +225,32 @@ def _marks(
     alone = [*np.einsum("nac,nc->an", axes, face), np.log(focal / away), np.log(away), np.log(focal)]
     alone += [np.clip(position[:, 2] - eyes[:, 2], -_FARTHEST, _FARTHEST), lean, np.log(seconds)]
     alone += [before[:, POINTS.index("eyes")], np.repeat(np.asarray(opened, float), count)]
-    marks = np.concatenate([told.reshape(len(told), -1), np.stack(alone, axis=-1)], axis=1)
+    of_people = _people(points, position, axes, places, count)
+    first, others = (told[:, part].reshape(len(told), -1) for part in (own_points, ~own_points))
+    marks = np.concatenate([first, np.stack(alone, axis=-1), others, of_people, paces], axis=1)
     assert marks.shape[1] == len(MARKS)
     return marks.reshape(shots, count, len(MARKS)).astype(np.float16)
+
+
+def _people(
+    points: NDArray[np.float64],
+    position: NDArray[np.float64],
+    axes: NDArray[np.float64],
+    places: Sequence[Places],
+    count: int,
+) -> NDArray[np.float64]:
+    """Of each of the people where the face points, how much to the camera, how far they are, and whether the
+    shot is about them: [P k, 4 PEOPLE]."""
+    faces = np.concatenate([p.faces for p in places]).astype(float)
+    first = len(POINTS) + PERSON_POINTS.index("eyes")
+    eyes = points[:, first : first + PEOPLE * len(PERSON_POINTS) : len(PERSON_POINTS)]
+    to_camera = position[:, None] - eyes
+    away = np.maximum(np.linalg.norm(to_camera, axis=-1), 0.2)
+    right = np.einsum("nc,nkc->nk", axes[:, 0], faces)
+    turned = np.einsum("nkc,nkc->nk", faces, to_camera) / away
+    meant = np.repeat(np.stack([p.meant for p in places]), count, axis=0)
+    meant = np.where(np.isfinite(away), meant, np.nan)
+    return np.stack([right, turned, np.log(away), meant], axis=-1).reshape(len(points), -1)
 
 
 def _rays(camera: Camera, side: int) -> NDArray[np.float32]:

@@ -82,6 +82,18 @@ def _subject(shot: Shot, story: StoryProposal, filming: Filming) -> Subject:
     return replace(subject, via=near.landmarks["eyes"], via_face=near.face)
 
 
+def people_beside(
+    subject: Subject, shot: Shot, story: StoryProposal, filming: Filming
+) -> tuple[tuple[Subject, ...], tuple[Subject, ...]]:
+    """Who is to be told of beside what a shot is about: those it is of if they are several, or who are in a
+    place; and the others, first over whose shoulder it looks."""
+    if subject.kind == "place":
+        return subject.company, ()
+    owner = shot.whose[0] if shot.view == "ots" and shot.whose else ""
+    near = (_person(owner, story, filming),) if subject.via is not None and owner else ()
+    return subject.members, (*near, *subject.company)
+
+
 def _person(name: str, story: StoryProposal, filming: Filming) -> Subject:
     return _holding(name, story, filming)
 

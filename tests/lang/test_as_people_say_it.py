@@ -208,8 +208,47 @@ def test_what_is_there_is_named_and_part_of_no_verb() -> None:
 
 
 def test_two_things_in_a_line_are_told() -> None:
-    _, report = read("(anna walks to the window and looks out)")
-    assert report.errors[0].help == "a line says one thing: what comes after `and` is a line of its own"
+    for line, first, second in (
+        ("anna walks to the window and looks out", "anna walks to the window", "anna looks out"),
+        ("anna picks up the cup and gives it to ben", "anna picks up the cup", "anna gives it to ben"),
+        ("anna waves and laughs", "anna waves", "anna laughs"),
+    ):
+        _, report = read(f"({line})")
+        assert report.errors[0].help == (
+            f"a line says one thing; were these two meant, one below the other? `({first})` `({second})`"
+        )
+    _, report = read("character carl = man\ncarl at door\n(carl looks at anna and ben)")
+    assert report.errors[0].help is not None
+    assert report.errors[0].help.endswith("`(carl looks at anna)` `(carl looks at ben)`")
+
+
+def test_two_who_are_named_are_each_of_them_or_do_it_to_each_other() -> None:
+    three = "character carl = man\ncarl at door\n"
+    for line, expected in (
+        ("(anna and carl walk to the counter)", [("anna", "walk", "counter"), ("carl", "walk", "counter")]),
+        ("(anna and carl talk)", [("anna", "talk", "carl"), ("carl", "talk", "anna")]),
+        ("(ben and carl look at each other)", [("ben", "look", "carl"), ("carl", "look", "ben")]),
+        ("(ben and carl hug)", [("ben", "hug", "carl")]),
+        ("(ben and carl look at her)", [("ben", "look", "anna"), ("carl", "look", "anna")]),
+        (
+            "(anna and ben and carl laugh)",
+            [("anna", "laugh", ""), ("ben", "laugh", ""), ("carl", "laugh", "")],
+        ),
+    ):
+        board, report = read(three + line)
+        assert board is not None, report.errors
+        found = [
+            (b.character, b.action, "" if b.target is None else b.target.path[-1])
+            for b in board.lines[0].beats
+        ]
+        assert found == expected, line
+    for line, code in (
+        ("(anna and bob wave)", "VDS065"),
+        ("(anna and ben)", "VDS070"),
+        ("(anna and anna wave)", "VDS076"),
+    ):
+        _, report = read(line)
+        assert [d.code for d in report.errors] == [code], line
 
 
 def test_they_are_both_or_do_it_to_each_other() -> None:

@@ -41,7 +41,9 @@ class BeatReader:
         self.report = report
         self.bring: Callable[[str, Span, str], Target | None] | None = None
         self.about: tuple[str, ...] = characters  # of them, who is in the scene
+        self.partner = ""  # with whom who acts does it, where two are named: `anna and ben dance`
         self._who: str | None = None
+        self._said: tuple[ast.Name, ...] = ()
         self._mentioned: tuple[str, ...] = ()  # people, who was spoken of last first
         self._it: tuple[str, ...] = ()  # the name of the thing that was spoken of last
         self.bodies: Mapping[str, str] = {}  # by character: feminine or masculine, where that is known
@@ -49,7 +51,8 @@ class BeatReader:
         self._actions |= {words.fold(name): name for name in catalog.names("action")}
 
     def read(self, node: ast.BeatNode) -> Beat | None:
-        character = self._who = self._character(node)
+        character, self._said = self._character(node), node.words
+        self._who = character
         node, manner = self._manner(node)
         possessed = next((w.text for w in node.words if w.text in ("her", "his", "their")), "")
         spoken_of = self._spoken_of(possessed)
@@ -125,6 +128,8 @@ class BeatReader:
     def _spoken_of(self, pronoun: str = "") -> str:
         """Whom ``him`` means: of those whom it may mean the only one who is about besides who acts, or who
         was spoken of last; "" for nobody."""
+        if self.partner and not pronoun:
+            return self.partner
         body = {"her": "feminine", "him": "masculine", "his": "masculine"}.get(pronoun, "")
         others = [name for name in self.about if name != self._who]
         may = [name for name in others if not body or self.bodies.get(name, body) == body]
@@ -132,7 +137,9 @@ class BeatReader:
         return may[0] if len(may) == 1 else last or ("" if len(others) != 1 else others[0])
 
     def _other(self) -> str:
-        """The only one who is about besides who acts; "" where there is nobody else, or more."""
+        """With whom it is done, else the only one who is about besides who acts; "" where there is none."""
+        if self.partner:
+            return self.partner
         others = [name for name in self.about if name != self._who]
         return others[0] if len(others) == 1 else ""
 
@@ -283,13 +290,23 @@ class BeatReader:
             if brought is not None:
                 return brought
         if len(group) > 1:
-            names = " ".join(name.text for name in group)
+            names = group[0].span.to(group[-1].span).text
             help = f"a second target follows a word like `to`: `{group[0].text} to {group[1].text}`"
             if any(name.text == "and" for name in group):
-                help = "a line says one thing: what comes after `and` is a line of its own"
+                help = self._two_lines()
             self.report.error("VDS073", group[1].span, label=f"`{names}` is not one name", help=help)
             return None
         return self._resolve(group[0])
+
+    def _two_lines(self) -> str:
+        """What to write for a line that says two things."""
+        said = [name.text for name in self._said]
+        at = said.index("and")
+        named = [word in self.characters for word in said]
+        first = said[: at - 1] if all(named[at - 1 : at + 2 : 2]) else said[:1]  # `looks at anna and ben`
+        lines = (said[:at], [*first, *said[at + 1 :]])
+        one, other = (f"`({' '.join(words)})`" for words in lines)
+        return f"a line says one thing; were these two meant, one below the other? {one} {other}"
 
     def _is_nowhere(self, group: list[ast.Name]) -> bool:
         """Whether words name neither anybody nor anything in the scene."""

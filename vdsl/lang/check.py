@@ -328,12 +328,20 @@ class _Checker:
         return out
 
     def _beats(self, reader: BeatReader, node: ast.BeatNode, stage: SceneBeingRead) -> tuple[Beat, ...]:
-        """What a beat says: one, or where it says ``they`` of two, one each, if it is nothing they do to each
+        """What a beat says: one, or where it is of several people, one each, if it is nothing two do to each
         other."""
-        both = phrases.both(node, reader.about, tuple(self.characters))
-        found = [self._beat(reader, both[0], stage)]
-        if len(both) > 1 and found[0] is not None and not reader.takes_somebody(found[0].action):
-            found.append(self._beat(reader, both[1], stage))
+        nodes, one_by_one = phrases.each_of(node, reader.about, tuple(self.characters))
+        who = [each.words[0].text for each in nodes]
+        found: list[Beat | None] = []
+        for k, each in enumerate(nodes):
+            reader.partner = who[1 - k] if one_by_one and len(who) == 2 else ""
+            found.append(self._beat(reader, each, stage))
+            if found[-1] is None or (len(nodes) == 2 and reader.takes_somebody(found[-1].action)):
+                break
+        reader.partner = ""
+        for other in nodes[len(found) :] if found[-1] is not None else ():  # they take part in what is done
+            if other.words[0].text in self.characters:
+                appear(other.words[0], stage, self.report)
         said = [beat for beat in found if beat is not None]
         if len(said) == 2 and all(beat.target is None for beat in said) and reader.between(said[0].action):
             names = [beat.character for beat in reversed(said)]

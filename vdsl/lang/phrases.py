@@ -101,12 +101,21 @@ def plain(said: Words, known: Known) -> Words:
     return character + _verb_first(rest, known)
 
 
-def both(node: ast.BeatNode, about: Sequence[str], named: Sequence[str]) -> tuple[ast.BeatNode, ...]:
-    """The beat, or where it is of ``they`` and two people are about, the same of each of them."""
-    word = node.words[0]
-    if word.text not in BOTH or word.text in named or len(about) != 2:
-        return (node,)
-    return tuple(replace(node, words=(ast.Name((who,), word.span), *node.words[1:])) for who in about)
+def each_of(
+    node: ast.BeatNode, about: Sequence[str], named: Sequence[str]
+) -> tuple[tuple[ast.BeatNode, ...], bool]:
+    """The beat, or where it is of ``anna and ben``, or of ``they`` and two people are about, the same of each
+    of them; and whether they are named one by one."""
+    first, count = node.words[0], 1
+    while count + 1 < len(node.words) and node.words[count].text == "and" and "and" not in named:
+        count += 2
+    if count > 1:
+        who, done = node.words[:count:2], node.words[count:]
+        return tuple(replace(node, words=(one, *done)) for one in who), True
+    if first.text not in BOTH or first.text in named or len(about) != 2:
+        return (node,), False
+    both = (ast.Name((one,), first.span) for one in about)
+    return tuple(replace(node, words=(one, *node.words[1:])) for one in both), False
 
 
 def targets_alone(rest: Words, is_name: Callable[[ast.Name], bool]) -> Words:

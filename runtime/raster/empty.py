@@ -104,7 +104,15 @@ class EmptySets:
         tiles = sets * -(-size[1] // self._reuse.BAND) * -(-size[0] // passes.run)
         self._reach = self._buffer("reach", (tiles * self._reuse.REACH,), np.float32)
         crew = self._crew(sets * -(-size[1] // self._reuse.BAND))
-        self._reuse.reach_of(cameras, layer.vis, loaded.arrays["basis"], sets, *size, self._reach, *crew)
+        a, chart, sun = loaded.arrays, loaded.chart, loaded.sunlight
+        of_set = (loaded.sheet, loaded.scene.static_faces, chart.plot, chart.begin, chart.side, chart.kinds)
+        through = (chart.begin, chart.side, chart.kinds, chart.kinds)
+        if sun is not None:
+            through = (sun.begin, sun.side, sun.chart, sun.whole)
+        ground = (a["floor"], a["tops"], loaded.columns, loaded.rows)
+        parts = (a["faces"], loaded.static_vertices, moments.normal, moments.position, moments.count)
+        told = (a["basis"], *of_set, int(sun is not None), *through, *parts, a["light"], *ground)
+        self._reuse.reach_of(cameras, layer.vis, *told, sets, *size, self._reach, *crew)
         blocks = sets * -(-size[1] // passes.run) * -(-size[0] // passes.run)
         self._wide = self._buffer("wide_reach", (blocks * self._reuse.REACH,), np.float32)
         self._reuse.widen(self._reach, sets, *size, self._wide)

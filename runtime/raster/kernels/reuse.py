@@ -14,9 +14,26 @@ import taichi as ti
 
 from . import crew
 from .ambient import lift_of
-from .geometry import f1, f2, greater, i1, i2, lesser, nearness, part3, triangle, u64s, vec3
+from .chart import DARK, MIXED, SHADOW_SHIFT, cell_at
+from .contact import above_floor, floor_cell
+from .geometry import (
+    f1,
+    f2,
+    f3,
+    greater,
+    i1,
+    i2,
+    item3,
+    lesser,
+    nearness,
+    part3,
+    triangle,
+    u8s,
+    u64s,
+    vec3,
+)
 from .light import MANY, across, clear_over
-from .paint import DONE, INK, RUN, SHADE, SMOOTH
+from .paint import DONE, INK, RUN, SHADE, SHEET, SMOOTH
 from .rows import BAND
 from .spans import uv
 
@@ -31,6 +48,27 @@ def reach_of(
     view: f2,
     vis: u64s,
     basis: f1,
+    sheet: f1,
+    static_faces: ti.i32,
+    plot: f1,
+    begin: i1,
+    side: i1,
+    chart: u8s,
+    sunny: ti.i32,
+    sun_begin: i1,
+    sun_side: i1,
+    sun_chart: u8s,
+    sun_whole: u8s,
+    faces: i2,
+    static_vertices: ti.i32,
+    normal: f3,
+    position: f3,
+    nobody: ti.i32,
+    light: f1,
+    floor: f1,
+    tops: f1,
+    columns: ti.i32,
+    rows: ti.i32,
     views: ti.i32,
     width: ti.i32,
     height: ti.i32,
@@ -39,11 +77,13 @@ def reach_of(
     slots: ti.i32,
     host: ti.template(),
 ):
-    """Where each tile of an empty set (BAND rows of a run) lies in the light, the first pixel of its
-    neighbour included.
+    """Where what may change of each tile of an empty set (BAND rows of a run) lies in the light, the first
+    pixel of its neighbour included: what no light reaches, no shadow darkens, and nothing stands on a wall.
 
-    reach, REACH numbers a tile: light coordinates low x, high x, low y, high y, low z; then low x, high x,
-    low y, high y in the world. Low above high where nothing is seen.
+    chart, sun_chart, sun_whole: how the set shades the key light, and the sun through windows, if it is
+    ``sunny``; nobody: the moment in which the parts of the set that move are as they rest
+    reach, REACH numbers a tile: light coordinates low x, high x, low y, high y, low z of what may be lit;
+    then low x, high x, low y, high y in the world of what may be stood on. Low above high where nothing is.
     """
     runs = (width + RUN - 1) // RUN
     tiles = (height + BAND - 1) // BAND
@@ -64,13 +104,32 @@ def reach_of(
                     )
                     line = n * height + y
                     for x in range(run * RUN, ti.min(width, run * RUN + RUN + 1)):
-                        if triangle(vis, line * width + x) >= 0:
+                        t = triangle(vis, line * width + x)
+                        if t >= 0:
                             p = eye + (first + step * ti.cast(x, ti.f32)) * (
                                 1.0 / nearness(vis, line * width + x)
                             )
-                            q = across(basis, p)
-                            low, high = ti.min(low, q), ti.max(high, q)
-                            floor_low, floor_high = ti.min(floor_low, p), ti.max(floor_high, p)
+                            lit, up = False, 0.0
+                            if t >= static_faces:
+                                lit = turned_to(
+                                    t, eye, nobody, faces, static_vertices, position, normal, light
+                                )
+                            else:
+                                row = 2 * t * SHEET
+                                plane = vec3(sheet[row + 12], sheet[row + 13], sheet[row + 14])
+                                if plane.dot(eye) < sheet[row + 15]:
+                                    row += SHEET
+                                up = sheet[row + 2]
+                                lit = in_light(t, row, p, sheet, plot, begin, side, chart)
+                                if sunny == 1 and not lit:
+                                    lit = ti.cast(sun_whole[t], ti.i32) != DARK
+                                    if lit and sun_side[t] > 1:
+                                        lit = kind_at(t, p, plot, sun_begin, sun_side[t], sun_chart) != DARK
+                            if lit:
+                                q = across(basis, p)
+                                low, high = ti.min(low, q), ti.max(high, q)
+                            if up > 0.7 and may_be_stood_on(p, floor, tops, columns, rows):
+                                floor_low, floor_high = ti.min(floor_low, p), ti.max(floor_high, p)
                 at = (task * runs + run) * REACH
                 for a in ti.static(range(2)):
                     reach[at + 2 * a] = low[a]
@@ -78,6 +137,66 @@ def reach_of(
                     reach[at + 5 + 2 * a] = floor_low[a]
                     reach[at + 6 + 2 * a] = floor_high[a]
                 reach[at + 4] = low.z
+
+
+@ti.func
+def in_light(
+    t,
+    row,
+    p,
+    sheet: ti.template(),
+    plot: ti.template(),
+    begin: ti.template(),
+    side: ti.template(),
+    chart: ti.template(),
+):
+    """Whether the key light may reach a place on a side of a triangle of the set, past all of the set."""
+    flags = ti.bit_cast(sheet[row + 11], ti.i32)
+    kind = flags >> SHADOW_SHIFT
+    if kind == MIXED and (flags >> 8) & 1 == 1:
+        kind = kind_at(t, p, plot, begin, side[t], chart)
+    return sheet[row + 3] > 0 and kind != DARK
+
+
+@ti.func
+def turned_to(
+    t,
+    eye,
+    m,
+    faces: ti.template(),
+    static_vertices,
+    position: ti.template(),
+    normal: ti.template(),
+    light: ti.template(),
+):
+    """Whether any of a triangle that moves, as the eye sees it, is turned to the key light."""
+    sun = vec3(light[0], light[1], light[2])
+    a, b, c = faces[t, 0] - static_vertices, faces[t, 1] - static_vertices, faces[t, 2] - static_vertices
+    p = item3(position, m, a)
+    cross = (item3(position, m, b) - p).cross(item3(position, m, c) - p)
+    side = -1.0 if cross.dot(p - eye) > 0 else 1.0
+    most = -1.0
+    for k in ti.static(range(3)):
+        corner = faces[t, k] - static_vertices
+        most = ti.max(most, side * item3(normal, m, corner).dot(sun))
+    return most > 0
+
+
+@ti.func
+def kind_at(t, p, plot: ti.template(), begin: ti.template(), side, chart: ti.template()):
+    """The kind of the cell that a place of a triangle lies in."""
+    cell = cell_at(t, p, plot, side)
+    return ti.cast(chart[begin[t] + cell[1] * side + cell[0]], ti.i32)
+
+
+@ti.func
+def may_be_stood_on(p, floor: ti.template(), tops: ti.template(), columns, rows):
+    """Whether a place is at the height of the floor, or of what stands on it (:func:`.ambient.sheltered`)."""
+    cell = floor_cell(p, floor, columns, rows)
+    on_top = False
+    if cell >= 0:
+        on_top = ti.abs(p.z - tops[cell]) < 0.07
+    return on_top or above_floor(p.z, floor) < 0.21
 
 
 @ti.kernel

@@ -1,7 +1,7 @@
 """The empty sets of cameras that stand still: drawn once, and taken over where nothing has changed.
 
-An empty set is a view without anything that moves, but for doors and the like that rest. For the host, and
-for rows of whole runs. Guarantees the same bytes as views that are drawn anew.
+An empty set is a view of the set and of the things in it that rest. For the host, and for rows of whole
+runs. Guarantees the same bytes as views that are drawn anew.
 """
 
 from __future__ import annotations
@@ -44,16 +44,15 @@ class EmptySets:
         loaded: Loaded,
         moments: Moments,
         glazing: Glazing | None,
-        seen: tuple[NDArray[np.float32], NDArray[np.int32], NDArray[np.int32]],
+        seen: tuple[NDArray[np.float32], NDArray[np.int32]],
         size: tuple[int, int],
     ) -> NDArray[np.int32]:
-        """Draw the empty sets that pay, once for all views of one camera and the same walls; with doors and
-        other parts of the set that move where all these views see them as they are at first.
+        """Draw the empty sets that pay, once for all views of one camera and the same walls, with all things
+        that are in all moments as they are at first.
 
-        seen: views, moments, hidden. Returns which empty set each view goes by, int32 [N]; -1 where it would
-        not pay.
+        seen: views, hidden. Returns which empty set each view goes by, int32 [N]; -1 where it would not pay.
         """
-        view, moment, hidden = seen
+        view, hidden = seen
         walls = hidden[:, : loaded.walls].astype(np.float32)
         key = np.ascontiguousarray(np.concatenate([view, walls], axis=1))
         _, first, of, count = np.unique(
@@ -62,18 +61,10 @@ class EmptySets:
         chosen = np.flatnonzero(count >= REUSED)
         number = np.full(len(count), -1, np.int32)
         number[chosen] = np.arange(len(chosen))
-        hinges = moments.hinges
-        moves = (
-            (hinges[moment] != hinges[:1]).any(axis=(1, 2, 3)) if hinges.size else np.zeros(len(view), bool)
-        )
-        resting = np.ones(len(count), np.bool_)
-        resting[of.reshape(-1)[moves]] = False
-        leaves = resting[chosen] & (moments.leaves is not None)
-        rest = hinges[:1].tobytes() if leaves.any() else b""
-        wanted = (size, key[first[chosen]].tobytes() + leaves.tobytes() + rest)
+        wanted = (size, key[first[chosen]].tobytes() + moments.still)
         if len(chosen) and wanted != self._kept:
             self._kept = wanted
-            self._draw(loaded, moments, glazing, view[first[chosen]], hidden[first[chosen]], size, leaves)
+            self._draw(loaded, moments, glazing, view[first[chosen]], hidden[first[chosen]], size)
         return number[of.reshape(-1)]
 
     def _draw(
@@ -84,12 +75,11 @@ class EmptySets:
         cameras: NDArray[np.float32],
         hidden: NDArray[np.int32],
         size: tuple[int, int],
-        leaves: NDArray[np.bool_],
     ) -> None:
         sets, passes = len(cameras), self._passes
         layer = passes.layer("empty_", sets, size)
         moment = np.full(sets, moments.count, np.int32)  # in which nobody is there
-        self._visibility.fill_empty(cameras, moment, hidden, layer.vis, size, leaves)
+        self._visibility.fill_empty(cameras, moment, hidden, layer.vis, size)
         layer.level.fill(passes.SHADE)
         passes.shade(loaded, moments, layer, (cameras, moment, sets), size)
         pixels = sets * size[0] * size[1]
@@ -149,10 +139,11 @@ class EmptySets:
             self._wide,
             moments.frame,
             moments.size,
-            moments.coarse,
+            moments.changed,
             a["floor"],
             *cells,
             moments.ground,
+            moments.count,
             bounds,
             box,
             views,

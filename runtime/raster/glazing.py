@@ -36,11 +36,6 @@ class Sheets:
     moving_first: int
 
     @property
-    def loose_first(self) -> int:
-        """All that moves is left out of sets without people."""
-        return self.moving_first
-
-    @property
     def most_drawn(self) -> int:
         """How many faces a view has at most."""
         return len(self.faces)

@@ -132,7 +132,7 @@ def loaded(scene: RenderScene, style: Style, backend: Backend, shading: Any) -> 
     palette = int(opaque.joints.max()) + 1 if len(opaque.joints) else 0
     paper = paper_level(opaque.light), gloom(opaque.light)
     surfaces, extent = (shadow, sheet, chart, lamps, sunlight, prepared.density.values.shape), (columns, rows)
-    moved = highest, Rig(prepared)
+    moved = highest, Rig(prepared, opaque.wall_count)
     return Loaded(
         prepared, arrays, glass, *surfaces, *extent, *moved, opaque.wall_count, people, palette, paper
     )

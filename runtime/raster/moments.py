@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from .detail import COUNT, FINEST
 from .device import Backend, vectorised
 from .loaded import Loaded
-from .resting import Lists, lists_of, needed
+from .resting import Lists, Taken, lists_of, needed
 from .types import Style
 
 SHADOW = 512  # texels along a moment's shadow map, for large pictures; half for small ones
@@ -26,13 +26,14 @@ Buffers = Callable[[str, tuple[int, ...], type], Any]
 
 
 class Moments:
-    """The moments that are drawn at a time, M of them, and one more in which nobody is there.
+    """The moments that are drawn at a time, M of them, and one more in which nobody is there, but only what
+    rests.
 
     position, normal: float32 [M + 1, V, 3] of skinned vertices
     wanted: int32 [M, C], 1 for moving clusters that some view of a moment may show; rests: int32 [C], 1 for
     those that are in all moments as in the first one, where alone they are wanted; ball: float32
-    [M + 1, C, 4], bounds of the wanted ones; leaves: int32 [1, C], those of the last moment, parts of the set
-    that move, None without; hinges: float32 [M, K, 3, 4], matrices of these
+    [M + 1, C, 4], bounds of the wanted ones; taken: int32 [C], 1 for those of the last moment, things that
+    rest, None without; still: what says how it looks, for whoever keeps pictures of it
     frame [M + 1, 3], size, depth, coarse: shadow maps; ground: [M + 1, 2, rows, columns] how closely things
     stand over the floor, and over furniture
     """
@@ -46,6 +47,10 @@ class Moments:
         self.count, self.size = 1, 1
         nothing = np.zeros((1, 1), np.int32)
         self.wanted, self.rests = backend.upload(nothing), backend.upload(nothing[0])
+        self.taken: NDArray[np.int32] | None = None
+        self.still = b""
+        self._changed: Any = None
+        self._cells = 1  # of floor and furniture, both
 
     def move(
         self,
@@ -67,7 +72,7 @@ class Moments:
         finest = bool(shown[..., FINEST].any())
         skinned = len(scene.rest) if finest else scene.detail.vertices
         self._reserve(loaded, len(palettes), height, skinned, lit)
-        self.leaves, self.hinges = None, palettes[:, scene.hinges]
+        self.taken, self.still, self._changed = None, b"", None
         if not len(palettes) or not (clusters or loaded.glass is not None):
             return
         moments = len(palettes)
@@ -82,11 +87,15 @@ class Moments:
         wanted[1:] &= restless
         self.wanted, self.rests = up(wanted.astype(np.int32)), up((~restless).astype(np.int32))
         self._bound(loaded, self.wanted, moments, self.position, self.ball)
-        self.leaves = self._rest(loaded, palettes) if lit else None
+        taken = self._rest(loaded, palettes, restless) if lit and self._backend.on_host else None
         if self.size > 1:
-            self._cast(loaded, moments, skinned)
+            self._cast(loaded, moments, skinned, taken)
         if self._style.occlusion and lit:
             self._touch(loaded, moments, moving)
+        if lit and self._backend.on_host:
+            rest = [self.frame[moments], self._ground_of(moments)]
+            rest += [] if taken is None else [taken.clusters, palettes[0, taken.entries]]
+            self.still = b"".join(np.ascontiguousarray(part).tobytes() for part in rest)
 
     def _skin(
         self,
@@ -152,23 +161,43 @@ class Moments:
             things = (self.position, a["area"], a["solid"], up(some), count)
             crew = (queue, slots, stretch, host)
             self._contact.touch(*things, *floor, begin, spare, out, self.ground, *crew)
+            if out is base and self._backend.on_host:
+                self._ground_of(moments)[:] = self.ground[:cells]
 
-    def _rest(self, loaded: Loaded, palettes: NDArray[np.float32]) -> Any:
-        """In the moment in which nobody is there, parts of the set that move, as they are in the first one.
+    def _ground_of(self, moment: int) -> Any:
+        """How closely things stand in a moment, flat. Host only."""
+        return self.ground[moment * self._cells : (moment + 1) * self._cells]
 
-        Returns which clusters these are, int32 [1, C]; None where there are none, and but on the host.
-        """
-        scene = loaded.scene
-        if not self._backend.on_host or not len(scene.leaves):
+    def _rest(
+        self, loaded: Loaded, palettes: NDArray[np.float32], restless: NDArray[np.bool_]
+    ) -> Taken | None:
+        """In the moment in which nobody is there, the things that rest, as they are in the first one. Host
+        only."""
+        taken = loaded.rig.taken(restless)
+        if taken is None:
             return None
-        wanted = np.zeros((1, len(scene.clusters) - scene.moving_first), np.int32)
-        wanted[:, : scene.loose_first - scene.moving_first] = 1
         here = slice(len(palettes), len(palettes) + 1)
-        whole = np.array([0, len(scene.leaves)], np.int32)
-        leaves = Lists(scene.leaves, whole, np.zeros(1, np.int32))
-        self._blended(loaded, palettes[:1], leaves, self.position[here], self.normal[here])
-        self._bound(loaded, wanted, 1, self.position[here], self.ball[here])
-        return wanted
+        whole = np.array([0, len(taken.vertices)], np.int32)
+        lists = Lists(taken.vertices, whole, np.zeros(1, np.int32))
+        self._blended(loaded, palettes[:1], lists, self.position[here], self.normal[here])
+        self.taken = taken.clusters.astype(np.int32)
+        return taken
+
+    @property
+    def changed(self) -> Any:
+        """As ``coarse``, of what lies in the light of a moment and not in that in which nobody is there. Host
+        only."""
+        if self._changed is None:
+            self._changed = self.coarse
+            if self.size > 1 and (self.frame[: self.count] == self.frame[self.count]).all():
+                summary = self._light.summary_size(self.size)
+                self._changed = self._buffer("changed", (self.count * summary,), np.float32)
+                spare = self._buffer(
+                    "differing", (self.count * (self.size // self._light.FINE) ** 2,), np.float32
+                )
+                crew = self._backend.crew(self.count)
+                self._light.differing(self.depth, self.size, self.count, spare, self._changed, *crew)
+        return self._changed
 
     def _reserve(self, loaded: Loaded, palettes: int, height: int, skinned: int, lit: bool) -> None:
         """Buffers, and the moment in which nobody is there. lit: whether with shadow maps"""
@@ -182,21 +211,21 @@ class Moments:
         self.size = texels if len(scene.casters) and palettes and self._style.shadows and lit else 1
         self.count = moments
         self.frame = self._buffer("frame", (moments + 1, 3), np.float32)
-        self.depth = self._buffer("depth", (moments * self.size**2,), np.float32)
+        self.depth = self._buffer("depth", ((moments + 1) * self.size**2,), np.float32)
         summary = max(1, self._light.summary_size(self.size))
-        self.coarse = self._buffer("coarse", (moments * summary,), np.float32)
-        cells = loaded.rows * loaded.columns
-        self.ground = self._buffer("ground", ((moments + 1) * 2 * cells,), np.float32)
+        self.coarse = self._buffer("coarse", ((moments + 1) * summary,), np.float32)
+        self._cells = 2 * loaded.rows * loaded.columns
+        self.ground = self._buffer("ground", ((moments + 1) * self._cells,), np.float32)
         if self._backend.on_host:
             self.frame[0 if self.size == 1 else moments :] = OUT_OF_REACH
-            self.ground[moments * 2 * cells if clusters and palettes and lit else 0 :] = 0.0
+            self.ground[moments * self._cells if clusters and palettes and lit else 0 :] = 0.0
         elif not clusters:  # another scene may have left something
             self.ground.fill(0.0)
 
-    def _cast(self, loaded: Loaded, moments: int, skinned: int) -> None:
-        """The shadow map of each moment."""
+    def _cast(self, loaded: Loaded, moments: int, skinned: int, taken: Taken | None) -> None:
+        """The shadow map of each moment, and that of what rests if all of them lie the same way."""
         scene, a, size = loaded.scene, loaded.arrays, self.size
-        seen = self._buffer("seen", (moments, max(skinned, 1), 3), np.float32)
+        seen = self._buffer("seen", (moments + 1, max(skinned, 1), 3), np.float32)
         blur = self._buffer("blur", (moments * self._light.summary_size(size),), np.float32)
         fitted = (TEXEL, size, scene.detail.vertices, moments, seen, self.frame)
         crew = self._backend.crew
@@ -204,3 +233,13 @@ class Moments:
         kept = (self.frame, size, moments, self.depth, blur, self.coarse)
         casters = (a["faces"], a["casters"], scene.closed_casters, loaded.static_vertices)
         self._light.cast(seen, *casters, *kept, *crew(moments))
+        if taken is None or not len(taken.casters) or (self.frame[:moments] != self.frame[0]).any():
+            return
+        first, rest = self.frame[moments : moments + 1], seen[moments : moments + 1]
+        self._light.turn(a["basis"], taken.vertices, self.position[moments:], rest)
+        first[:] = self.frame[0]
+        summary = self._light.summary_size(size)
+        kept = (first, size, 1, self.depth[moments * size**2 :], blur, self.coarse[moments * summary :])
+        self._light.cast(
+            rest, a["faces"], taken.casters, taken.closed, loaded.static_vertices, *kept, *crew(1)
+        )

@@ -43,9 +43,6 @@ class Prepared:
     info: int32 [F, 3]: surface index, material | flags << SHIFT, wall or -1; people and the levels of
     detailed bodies are walls too, after those of the set
     clusters: int32 [C, 4]: first triangle, count, cull, wall; moving_first: index of the first skinned one;
-    loose_first: of the first of these that is no part of the set, as a door's leaf is
-    leaves: int32, skinned vertices of the parts of the set that move; hinges: int32, palette entries that
-    move them
     sphere: float32 [C, 4], bounds of the static ones
     surface_object: int32 [S]: object id of each surface, a surface being one part of one object
     one_color: int32 [S], 1 where all faces of a surface have one colour
@@ -67,9 +64,6 @@ class Prepared:
     info: NDArray[np.int32]
     clusters: NDArray[np.int32]
     moving_first: int
-    loose_first: int
-    leaves: NDArray[np.int32]
-    hinges: NDArray[np.int32]
     sphere: NDArray[np.float32]
     surface_object: NDArray[np.int32]
     one_color: NDArray[np.int32]
@@ -229,10 +223,8 @@ def prepare(scene: RenderScene, style: Style, on_host: bool = False) -> Prepared
     moving_order, moving_clusters = _clusters(
         scene.skinned, scene.skinned_object, own_wall, moving_cull, loose
     )
-    leaves = np.unique(scene.skinned.faces[~loose])
     fitting, own_wall = fitting[moving_order], own_wall[moving_order]
     skinned = _ordered(scene.skinned, moving_order)
-    loose_first = len(clusters) + int((~loose[moving_order][moving_clusters[:, 0]]).sum())
     moving_clusters = moving_clusters.copy()
     moving_clusters[:, 0] += len(order)
 
@@ -267,9 +259,6 @@ def prepare(scene: RenderScene, style: Style, on_host: bool = False) -> Prepared
         info=np.stack([surface.reshape(-1), materials | (flags << SHIFT), wall], axis=1).astype(np.int32),
         clusters=np.concatenate([clusters, moving_clusters]).astype(np.int32),
         moving_first=len(clusters),
-        loose_first=loose_first,
-        leaves=leaves.astype(np.int32),
-        hinges=np.unique(scene.joints[leaves][scene.weights[leaves] > 0]).astype(np.int32),
         sphere=spheres(static.vertices, static.faces, clusters),
         surface_object=surfaces[:, 1].astype(np.int32),
         one_color=_one_color(color, surface.reshape(-1), len(surfaces)),

@@ -223,7 +223,7 @@ class Renderer:
         moments.move(content, palettes, height, by_moment, pictures and self._plain is None)
         some = moments.count if len(content.scene.clusters) > content.scene.moving_first else 0
         moved = (moments.position, moments.ball, moments.wanted, moments.rests)
-        self._visibility.move(*moved, some, moments.leaves)
+        self._visibility.move(*moved, some, moments.taken)
         if self._glazing is not None:
             self._glazing.move(moments)
 
@@ -247,7 +247,7 @@ class Renderer:
         empty = np.full(views, -1, np.int32)
         shaded = color.size > 0
         if shaded and self.serial and self._plain is None and size[0] % passes.run == 0:
-            empty = self._empty.drawn_for(content, moments, glazing, (view, moment, hidden), size)
+            empty = self._empty.drawn_for(content, moments, glazing, (view, hidden), size)
         self._visibility.fill(view_, moment_, hidden_, layer.vis, size, empty, self.serial)
         if not shaded:
             if objects is not None:

@@ -7,6 +7,7 @@ it are the same in all moments, to the bit.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -35,10 +36,27 @@ def lists_of(masks: NDArray[np.bool_], which: NDArray[np.int32]) -> Lists:
     return Lists(np.nonzero(masks)[1].astype(np.int32), begin, which.astype(np.int32))
 
 
-class Rig:
-    """Which matrices move each skinned vertex, each moving cluster and each thing of a scene."""
+class Taken(NamedTuple):
+    """Moving clusters that belong to empty sets, as they rest.
 
-    def __init__(self, scene: Prepared) -> None:
+    clusters: bool [C]; vertices: int32, theirs; entries: int32, what of a palette moves them
+    casters: int32, triangles of them that throw shadows, of which the first ``closed`` are of closed shells
+    """
+
+    clusters: NDArray[np.bool_]
+    vertices: NDArray[np.int32]
+    entries: NDArray[np.int32]
+    casters: NDArray[np.int32]
+    closed: int
+
+
+class Rig:
+    """Which matrices move each skinned vertex, each moving cluster and each thing of a scene.
+
+    walls: of the set; what is in others is somebody, or a level of a body
+    """
+
+    def __init__(self, scene: Prepared, walls: int) -> None:
         joints, weights = scene.detail.scene.joints, scene.detail.scene.weights
         first = np.take_along_axis(joints, weights.argmax(axis=1)[:, None], axis=1) if len(joints) else joints
         used = np.sort(np.where(weights != 0, joints, first), axis=1)
@@ -52,6 +70,11 @@ class Rig:
         pairs = cluster[:, None].astype(np.int64) * max(count, 1) + self._kind[faces]
         pairs = np.unique(pairs)
         self._cluster_of, self._kind_in = pairs // max(count, 1), pairs % max(count, 1)
+        self._corners = faces
+        self._cluster, self._first = cluster, scene.static_faces
+        self._casters, self._closed = scene.casters, scene.closed_casters
+        self._things = moving[:, 3] < walls if len(moving) else np.zeros(0, np.bool_)
+        self._taken: Taken | None = None  # the last
         self._owner = scene.owner
         self._touching = scene.area > 0
 
@@ -67,6 +90,24 @@ class Rig:
         clusters = np.zeros(self._clusters, np.bool_)
         clusters[self._cluster_of[kinds[self._kind_in]]] = True
         return kinds[self._kind], clusters
+
+    def taken(self, moves: NDArray[np.bool_]) -> Taken | None:
+        """What empty sets show of what moves: things that rest. moves: bool [C], of :meth:`moves`"""
+        clusters = self._things & ~moves
+        if not clusters.any():
+            return None
+        if self._taken is None or (self._taken.clusters != clusters).any():
+            kinds = np.unique(self._kind_in[clusters[self._cluster_of]])
+            own = clusters[self._cluster[self._casters - self._first]]
+            casters = self._casters[own].astype(np.int32)
+            self._taken = Taken(
+                clusters,
+                np.unique(self._corners[clusters[self._cluster]]).astype(np.int32),
+                np.unique(self._kinds[kinds]).astype(np.int32),
+                casters,
+                int(own[: self._closed].sum()),
+            )
+        return self._taken
 
     def touching(self, moving: NDArray[np.bool_]) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
         """First vertices and those after the last [R, 2] of the things that move, and of those that rest, of

@@ -33,8 +33,6 @@ class Triangles(Protocol):
     @property
     def moving_first(self) -> int: ...
     @property
-    def loose_first(self) -> int: ...
-    @property
     def most_drawn(self) -> int: ...
 
 
@@ -50,7 +48,6 @@ class Visibility:
         self._backend = backend
         self._buffer: Buffers = lambda of, shape, dtype: buffer(name + of, shape, dtype)
         self._geometry = geometry
-        self._drawn = np.zeros(0, np.int32)  # clusters of each remembered view, up to which they are drawn
         if backend.on_host:
             from .kernels import gather, spans
 
@@ -68,25 +65,22 @@ class Visibility:
             self._arrange(self._still, wanted, (0, count), 0, 1, vertices)
 
     def move(
-        self, position: Any, ball: Any, wanted: Any, rests: Any, moments: int, leaves: Any = None
+        self, position: Any, ball: Any, wanted: Any, rests: Any, moments: int, taken: Any = None
     ) -> None:
         """Take over the skinned vertices [M, V, 3] and the bounds of the moving clusters [M, C, 4].
 
         wanted: int32 [M, C], 1 where some view may show a cluster; rests: int32 [C], 1 for those that are
-        wanted in the first moment alone, and taken over from it; leaves: int32 [1, C], the wanted ones of one
-        moment more, the last one, in which nobody is there; None without it
+        wanted in the first moment alone, and taken over from it; taken: int32 [C], 1 for those of these that
+        are in the sets that views begin from, None for none
         """
         self._position, self._ball, self._rests = position, ball, rests
+        self._taken = np.zeros(rests.shape, np.int32) if taken is None else taken
         scene = self._scene
         if self._backend.on_host:
             part = (scene.moving_first, len(scene.clusters) - scene.moving_first)
             each = part[1] * self._each
-            self._moving = self._buffer("moving", ((moments + 1) * max(each, self._each),), np.float32)
-            offset = len(scene.vertices)
-            self._arrange(self._moving, wanted, part, offset, moments, position)
-            if leaves is not None:
-                last = (self._moving[moments * each :], leaves, part, offset, 1, position[moments:])
-                self._arrange(*last)
+            self._moving = self._buffer("moving", (max(moments, 1) * max(each, self._each),), np.float32)
+            self._arrange(self._moving, wanted, part, len(scene.vertices), moments, position)
 
     @property
     def _each(self) -> int:
@@ -101,17 +95,12 @@ class Visibility:
             a = self._arrays
             self._kernels.arrange(a["faces"], a["clusters"], wanted, *part, offset, moments, vertices, out)
 
-    def fill_empty(
-        self, view: Any, moment: Any, hidden: Any, vis: Any, size: tuple[int, int], leaves: NDArray[np.bool_]
-    ) -> None:
-        """Fill the visibility buffers of views of the set alone, and remember them. Host only.
-
-        leaves: [N], with which of them also its parts that move are drawn, as they rest
-        """
-        scene = self._scene
-        self._drawn = np.where(leaves, scene.loose_first, scene.moving_first).astype(np.int32)
-        part = np.stack([np.zeros_like(self._drawn), self._drawn], axis=1)
-        self._fill_bands(view, moment, hidden, vis, size, part, None)
+    def fill_empty(self, view: Any, moment: Any, hidden: Any, vis: Any, size: tuple[int, int]) -> None:
+        """Fill the visibility buffers of views of the set and of what is taken into it, and remember them.
+        Host only."""
+        part = np.tile(np.array([0, len(self._scene.clusters)], np.int32), (len(view), 1))
+        which = np.full(len(view), self._kernels.TAKEN, np.int32)
+        self._fill_bands(view, moment, hidden, vis, size, (part, which), None)
 
     def fill(
         self,
@@ -134,8 +123,9 @@ class Visibility:
         if serial:
             last = len(self._scene.clusters) if movers else self._scene.moving_first
             part = np.tile(np.array([0, last], np.int32), (views, 1))
-            part[empty >= 0, 0] = self._drawn[empty[empty >= 0]]
-            self._fill_bands(view, moment, hidden, vis, size, part, empty)
+            part[empty >= 0, 0] = self._scene.moving_first
+            which = np.where(empty >= 0, self._kernels.OTHERS, self._kernels.EVERY).astype(np.int32)
+            self._fill_bands(view, moment, hidden, vis, size, (part, which), empty)
             return
         scene, a = self._scene, self._arrays
         self._geometry.clear(vis, views * size[0] * size[1])
@@ -161,11 +151,12 @@ class Visibility:
         hidden: Any,
         vis: Any,
         size: tuple[int, int],
-        part: NDArray[np.int32],
+        drawn: tuple[NDArray[np.int32], NDArray[np.int32]],
         empty: NDArray[np.int32] | None,
     ) -> None:
-        """Fill from the clusters in ``part`` [N, 2]; empty: None for sets alone, else as in :meth:`fill`."""
-        scene, a, kernels, views = self._scene, self._arrays, self._kernels, len(part)
+        """Fill from the clusters in ``drawn``: from which to which [N, 2], and which of the moving ones [N];
+        empty: None for sets alone, else as in :meth:`fill`."""
+        scene, a, kernels, views = self._scene, self._arrays, self._kernels, len(drawn[0])
         width, height = size
         lanes, most = kernels.LANES, max(scene.most_drawn, 1)  # a triangle leaves two at most
         work = self._buffer("work", (views * (kernels.CORNERS + 1) * lanes,), np.float32)
@@ -183,7 +174,8 @@ class Visibility:
             self._ball,
             scene.moving_first,
             self._rests,
-            part,
+            self._taken,
+            *drawn,
             self._still.reshape(-1, lanes),
             self._moving.reshape(-1, lanes),
             work.reshape(-1, lanes),

@@ -12,7 +12,7 @@ from raster_scenes import box, looking, room, scene, sphere, still
 from runtime.mesh import MATERIALS
 from runtime.raster import empty as module
 from runtime.raster.renderer import Renderer
-from runtime.raster.types import STYLES, Frames, RenderScene, Views
+from runtime.raster.types import LOOSE, STYLES, Frames, RenderScene, Views
 
 EYE, TARGET = (2.6, -1.8, 1.5), (2.0, 1.8, 1.0)
 
@@ -181,3 +181,79 @@ def test_a_door_that_rests_belongs_to_the_empty_set(
     moments[:, 2, 0, 3] = 0.1  # the same door at another place, as in a later part of a take
     expected = drawn_anew()
     assert (drawer.render(moments, views, size).color == expected.color).all()
+
+
+def furnished() -> RenderScene:
+    """A floor and a wall, two balls that move, and crates and a vase that can be carried."""
+    balls = [
+        sphere((0, 0, 0.3), (0.3, 0.3, 0.3), (0.8, 0.2, 0.2)),
+        sphere((0.8, 0, 0.2), (0.2, 0.2, 0.2), (0.2, 0.2, 0.8)),
+    ]
+    crate = box((-2.4, -0.6, 0.0), (-1.6, 0.2, 0.7), (0.6, 0.5, 0.3), "wood")
+    vase = sphere((2.2, 0.6, 0.35), (0.2, 0.2, 0.35), (0.3, 0.6, 0.5))
+    floor = box((-6, -6, -0.1), (6, 6, 0), (0.7, 0.7, 0.7), "wood")
+    wall = box((-6, 3, 0), (6, 3.2, 3), (0.7, 0.6, 0.5), "plaster")
+    # far apart, so that all moments are seen alike by the light
+    corners = [
+        box((x - 0.2, y - 0.2, 0), (x + 0.2, y + 0.2, 1.2), (0.5, 0.4, 0.3))
+        for x in (-5, 5)
+        for y in (-5, 2.5)
+    ]
+    content = scene([floor, wall], [*balls, crate, vase, *corners])
+    somebody = content.skinned_object - content.skinned_object.min() < 2
+    return replace(content, fitting=np.where(somebody, LOOSE - 1, LOOSE).astype(np.int32))
+
+
+@pytest.mark.parametrize("style", ["board", "clay", "ink"])
+def test_things_that_rest_belong_to_the_empty_set(monkeypatch: pytest.MonkeyPatch, style: str) -> None:
+    drawer, size, content = Renderer("cpu", STYLES[style]), (640, 360), furnished()
+    drawer.load(content)
+    views = looking([(0, -6, 2.5)] * 4, [(0, 0, 0.6)] * 4, moments=[0, 1, 2, 3])
+    moments = np.concatenate([walking(4), still(6, 4)], axis=1)
+
+    def drawn_anew(moments: NDArray[np.float32]) -> Frames:
+        with monkeypatch.context() as patch:
+            patch.setattr(module, "REUSED", 10**9)
+            return drawer.render(moments, views, size, ids=True)
+
+    def shaded() -> NDArray[np.bool_]:
+        level = drawer._buffers["level"][: 4 * size[0] * size[1] // 16].reshape(4, size[1], -1)
+        return np.repeat(level == 3, 16, axis=-1)
+
+    expected = drawn_anew(moments)
+    assert (drawer.render(moments, views, size).color == expected.color).all()
+    assert shaded().mean() < 0.2
+    assert expected.ids is not None
+    first = content.skinned_object.min()
+    assert shaded()[expected.ids == first + 2].mean() < 0.15  # the crate
+    assert shaded()[expected.ids == first + 3].mean() < 0.15  # the vase
+    for move in range(
+        3
+    ):  # one is put elsewhere, is carried, and all of them are far away from where they were
+        moments = moments.copy()
+        moments[:, 3, 0, 3] = -0.4 if move == 0 else np.linspace(0.0, 0.3, 4)
+        if move == 2:
+            moments[:, :2, 0, 3] += np.linspace(-8.0, 8.0, 4)[:, None]
+        expected = drawn_anew(moments)
+        assert (drawer.render(moments, views, size).color == expected.color).all(), move
+
+
+def test_walls_that_no_light_reaches_are_left_alone(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What moves stands between the light and a wall that is turned away from it."""
+    drawer, size = Renderer("cpu"), (640, 360)
+    drawer.load(furnished())
+    direction = np.asarray(drawer._loaded.arrays["light"][:3], float)  # type: ignore[union-attr]
+    side = -np.sign(direction[1])  # of the wall from which it is dark
+    eye, target = (0.0, 3.1 + side * 6.0, 1.6), (0.0, 3.1, 1.5)
+    views = looking([eye] * 4, [target] * 4, moments=[0, 1, 2, 3])
+    moments = np.concatenate([walking(4), still(6, 4)], axis=1)
+    moments[:, :2, 1, 3] += 3.1 - side  # on the lit side, close to the wall
+    with monkeypatch.context() as patch:
+        patch.setattr(module, "REUSED", 10**9)
+        expected = drawer.render(moments, views, size, ids=True)
+    assert (drawer.render(moments, views, size).color == expected.color).all()
+    level = drawer._buffers["level"][: 4 * size[0] * size[1] // 16].reshape(4, size[1], -1)
+    assert expected.ids is not None
+    wall = expected.ids == np.bincount(expected.ids[expected.ids >= 0].reshape(-1)).argmax()
+    assert wall.mean() > 0.3
+    assert np.repeat(level == 3, 16, axis=-1)[wall].mean() < 0.1

@@ -37,6 +37,7 @@ CORNERS = 9  # numbers of a triangle: three corners, x y z
 TAGS = 3  # numbers kept with a triangle on the screen: triangle + 1, first row, row after the last
 BUNDLE = 32  # triangles on the screen, one after another, whose rows are kept together
 GROUPS = 4  # of LANES triangles in a cluster, at most
+EVERY, TAKEN, OTHERS = 0, 1, 2  # which of the moving clusters a view draws
 WHOLE, ACROSS = 1.0, 2.0  # states of a lane: in front of the near plane, or across it
 EVEN = 12582912.0  # 1.5 * 2^23: adding and taking it off rounds to whole numbers
 
@@ -105,7 +106,9 @@ def gather(
     moving_sphere: f3,
     moving_first: ti.i32,
     rests: i1,
+    taken: i1,
     part: i2,
+    which: i1,
     still: fv,
     moving: fv,
     work: fv,
@@ -125,7 +128,9 @@ def gather(
     """The triangles of each view that may cover the centre of a pixel, as they are on the screen.
 
     clusters [C, 4]: first triangle, count, cull, wall; rests [moving clusters]: 1 for those that are in all
-    moments as in the first one, where alone they are; part [views, 2]: from which to which is drawn
+    moments as in the first one, where alone they are; taken: 1 for those of them that are in empty sets
+    part [views, 2]: from which cluster to which is drawn; which [views]: of the moving ones EVERY, those that
+    are TAKEN, or the OTHERS
     still, moving: their corners (:func:`arrange`)
     work [views * 10]: scratch, ``lane`` its memory; corner [views, 2 F, CORNERS], tag [views, 2 F, TAGS]:
     what is found; clipped [views, F]: triangles across the near plane; counts [views, 2]: how many of both
@@ -146,10 +151,11 @@ def gather(
             found, crossing = 0, 0
             for c in range(part[n, 0], part[n, 1]):
                 b0, b1, b2, radius = 0.0, 0.0, 0.0, 0.0
-                moves = c >= moving_first
+                moves, drawn = c >= moving_first, True
                 m = moment[n]
                 if moves:
                     k = c - moving_first
+                    drawn = which[n] == EVERY or (taken[k] != 0) == (which[n] == TAKEN)
                     if rests[k] != 0:
                         m = 0
                     b0, b1 = moving_sphere[m, k, 0], moving_sphere[m, k, 1]
@@ -161,7 +167,8 @@ def gather(
                 b2 -= e2
                 z = g0 * b0 + g1 * b1 + g2 * b2
                 shown = (
-                    z > NEAR - radius
+                    drawn
+                    and z > NEAR - radius
                     and ti.abs(r0 * b0 + r1 * b1 + r2 * b2) - z * side_x < radius * grow_x
                     and ti.abs(u0 * b0 + u1 * b1 + u2 * b2) - z * side_y < radius * grow_y
                 )

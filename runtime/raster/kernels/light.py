@@ -114,6 +114,57 @@ def cast(
             summarise(depth, base, size, spare, coarse, m)
 
 
+@ti.kernel
+def turn(basis: f1, vertices: i1, position: f3, seen: f3):
+    """Light coordinates of some vertices of one moment, as :func:`fit` gives them."""
+    for i in range(vertices.shape[0]):
+        v = vertices[i]
+        q = across(basis, vec3(position[0, v, 0], position[0, v, 1], position[0, v, 2]))
+        for a in ti.static(range(3)):
+            seen[0, v, a] = q[a]
+
+
+@ti.kernel
+def differing(
+    depth: f1,
+    size: ti.i32,
+    moments: ti.i32,
+    spare: f1,
+    changed: f1,
+    queue: i1,
+    slots: ti.i32,
+    host: ti.template(),
+):
+    """The greatest height around each coarse block of what is in a moment's map and not in the last one, that
+    of what rests; all maps lie the same way.
+
+    changed: as ``coarse``, of which only that is written; spare: a number for each fine block of each moment
+    """
+    for slot in range(slots):
+        m = crew.task(slot, moments, queue, host)
+        if m < moments:
+            blocks = size // FINE
+            own = m * blocks * blocks
+            for i in range(blocks * blocks):
+                spare[own + i] = NOWHERE
+            for y in range(size):
+                row = own + (y // FINE) * blocks
+                for x in range(size):
+                    z = depth[(m * size + y) * size + x]
+                    if z != depth[(moments * size + y) * size + x]:
+                        at = row + x // FINE
+                        spare[at] = greater(spare[at], z)
+            wide = size // BLOCK
+            last = m * coarse_size(size) + 2 * blocks * blocks
+            for j in range(wide):
+                for i in range(wide):
+                    most = NOWHERE
+                    for y in range(ti.max(0, 2 * j - 2), ti.min(blocks, 2 * j + 4)):
+                        for x in range(ti.max(0, 2 * i - 2), ti.min(blocks, 2 * i + 4)):
+                            most = greater(most, spare[own + y * blocks + x])
+                    changed[last + j * wide + i] = most
+
+
 @ti.func
 def summarise(depth: ti.template(), base, size, spare: ti.template(), coarse: ti.template(), m):
     """The greatest and the least height around each fine block, and the greatest around coarse ones."""

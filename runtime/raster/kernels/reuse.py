@@ -231,16 +231,22 @@ def shaded(at, m, reach: ti.template(), frame: ti.template(), size, coarse: ti.t
     return out
 
 
+@ti.func
+def differs(ground: ti.template(), at, rest, cells):
+    """Whether what stands in a cell of the floor, or over it, is not what rests there."""
+    return ground[at] != ground[rest] or ground[at + cells] != ground[rest + cells]
+
+
 @ti.kernel
 def standing(ground: f1, columns: ti.i32, rows: ti.i32, moments: ti.i32, bounds: i2):
     """First and last column, first and last row [M, 4] of the floor's cells on which, or on what is there,
-    anything stands. ground: of :func:`.contact.touch`"""
+    anything stands that does not in the last moment. ground: of :func:`.contact.touch`"""
     for m in range(moments):
         left, right, low, high = columns, -1, rows, -1
         for j in range(rows):
             for i in range(columns):
                 at = (2 * m * rows + j) * columns + i
-                if ground[at] != 0 or ground[at + rows * columns] != 0:
+                if differs(ground, at, (2 * moments * rows + j) * columns + i, rows * columns):
                     left, right = ti.min(left, i), ti.max(right, i)
                     low, high = ti.min(low, j), j
         bounds[m, 0], bounds[m, 1], bounds[m, 2], bounds[m, 3] = left, right, low, high
@@ -250,6 +256,7 @@ def standing(ground: f1, columns: ti.i32, rows: ti.i32, moments: ti.i32, bounds:
 def stood_on(
     at,
     m,
+    rest,
     bounds: ti.template(),
     reach: ti.template(),
     floor: ti.template(),
@@ -257,7 +264,8 @@ def stood_on(
     rows,
     ground: ti.template(),
 ):
-    """Whether anything stands on the floor, or on furniture, where a run is."""
+    """Whether anything stands on the floor, or on furniture, where a run is, but for what does in moment
+    ``rest``."""
     out = False
     if reach[at + 5] <= reach[at + 6]:
         wide, deep = ti.cast(columns, ti.f32), ti.cast(rows, ti.f32)
@@ -279,7 +287,8 @@ def stood_on(
                 for j in range(j0, j1 + 1):
                     for i in range(i0, i1_ + 1):
                         cell = (2 * m * rows + j) * columns + i
-                        if ground[cell] != 0 or ground[cell + rows * columns] != 0:
+                        still = (2 * rest * rows + j) * columns + i
+                        if differs(ground, cell, still, rows * columns):
                             out = True
     return out
 
@@ -300,6 +309,7 @@ def find(
     columns: ti.i32,
     rows: ti.i32,
     ground: f1,
+    rest: ti.i32,
     bounds: i2,
     box: i2,
     views: ti.i32,
@@ -332,7 +342,7 @@ def find(
                 clear = False  # whether the light of the whole block is that of the empty set
                 if s >= 0:
                     at = ((s * bands + band) * runs + run) * REACH
-                    clear = not stood_on(at, m, bounds, wide, floor, columns, rows, ground)
+                    clear = not stood_on(at, m, rest, bounds, wide, floor, columns, rows, ground)
                     if clear:
                         clear = not shaded(at, m, wide, frame, size, coarse)
                 for tile in range(band * each, ti.min(tiles, band * each + each)):
@@ -356,7 +366,7 @@ def find(
                             anew = True
                     if not anew and not clear:
                         at = ((s * tiles + tile) * runs + run) * REACH
-                        anew = stood_on(at, m, bounds, reach, floor, columns, rows, ground)
+                        anew = stood_on(at, m, rest, bounds, reach, floor, columns, rows, ground)
                         if not anew:
                             anew = shaded(at, m, reach, frame, size, coarse)
                     for y in range(tile * BAND, bottom):

@@ -263,10 +263,88 @@ def test_they_are_both_or_do_it_to_each_other() -> None:
             ("anna", "ben"),
             ("ben", "anna"),
         ]
-    board, report = read("(they laugh)\ncharacter carl = man\ncarl at door\n(they laugh)\n(he waves)")
-    assert board is None
-    assert [d.code for d in report.errors] == ["VDS065", "VDS065"]
-    assert report.errors[1].help == "say who by name, of anna, ben and carl"
+
+
+def acts(lines: str) -> list[tuple[str, str, str]]:
+    """Who does what, to whom, in all lines."""
+    board, report = read(lines)
+    assert board is not None, [d.label for d in report.errors]
+    return [
+        (b.character, b.action, "" if b.target is None else b.target.path[-1])
+        for line in board.lines
+        for b in line.beats
+    ]
+
+
+THREE = "character carl = man\ncarl at door\n"
+
+
+def test_who_acts_may_be_said_by_a_pronoun() -> None:
+    assert acts("(anna waves)\n(she laughs)\n(ben waves)\n(he nods)\n(she nods)") == [
+        ("anna", "wave", ""),
+        ("anna", "laugh", ""),
+        ("ben", "wave", ""),
+        ("ben", "nod", ""),
+        ("anna", "nod", ""),
+    ]
+    # who acted last comes before who was spoken of last
+    assert acts(THREE + "(ben hugs anna)\n(he waves at carl)\n(he laughs)")[2] == ("ben", "laugh", "")
+    assert acts(THREE + "(anna hugs carl)\n(he laughs)")[1] == ("carl", "laugh", "")
+    assert acts("(she waves)")[0][0] == "anna"  # nobody else may be meant
+    assert acts(THREE + "(carl gives ben the cup)\n(they laugh)")[1:] == [
+        ("ben", "laugh", ""),
+        ("carl", "laugh", ""),
+    ]
+    assert acts(THREE + "(everybody laughs)") == [(name, "laugh", "") for name in ("anna", "ben", "carl")]
+    assert acts(THREE + "(they all look at anna)") == [("ben", "look", "anna"), ("carl", "look", "anna")]
+    assert acts("(they laugh)\n" + THREE + "(they wave)\n(he nods)")[2:] == [
+        ("anna", "wave", ""),
+        ("ben", "wave", ""),
+        ("ben", "nod", ""),
+    ]
+    for line in ("(they laugh)", "(he laughs)", "(we laugh)"):
+        board, report = read(THREE + line)
+        assert board is None
+        assert [d.code for d in report.errors] == ["VDS065"], line
+        assert report.errors[0].help == "say who by name, of anna, ben and carl"
+
+
+def test_what_a_thing_is_like_and_how_something_is_done_is_left_out() -> None:
+    """With a warning where it would be seen."""
+    for line, expected, left in (
+        ("(anna opens the heavy old window)", ("anna", "open", "window"), ["`heavy old` is left out"]),
+        ("(ben drinks a hot coffee)", ("ben", "drink", "coffee"), ["`hot` is left out"]),
+        ("(anna peeks at ben over the table)", ("anna", "peek", "ben"), ["`over the table` is left out"]),
+        ("(anna walks to the kitchen window)", ("anna", "walk", "window"), []),
+        ("(anna sits down with a heavy sigh)", ("anna", "sit", ""), []),
+        ("(ben laughs to himself for a long time)", ("ben", "laugh", ""), []),
+        ("(anna nods again and again)", ("anna", "nod", ""), []),
+        ("(ben wipes his greasy hands)", None, []),
+        ("(anna looks back at him loudly)", ("anna", "look", "ben"), []),
+        (
+            "(anna gives ben a letter under the table)",
+            ("anna", "give", "letter"),
+            ["`under the table` is left out"],
+        ),
+    ):
+        board, report = read(line)
+        if expected is None:
+            assert board is None
+            continue
+        assert board is not None, (line, [d.label for d in report.errors])
+        found = board.lines[0].beats[0]
+        target = "" if found.target is None else found.target.path[-1].split(".")[-1]
+        assert (found.character, found.action) == expected[:2], line
+        assert target.startswith(expected[2]), (line, target)
+        assert [d.label for d in report.diagnostics if d.code == "VDS082"] == left, line
+    for line, code in (
+        ("(anna pours cup table)", "VDS073"),  # two names, and no word for what the table is like
+        ("(anna picks up the cup to the table)", "VDS073"),  # that would be seen
+        ("(anna looks at the blue unicorn)", "VDS073"),
+    ):
+        board, report = read(line)
+        assert board is None
+        assert code in [d.code for d in report.errors], line
 
 
 def test_what_is_numbered_is_found_by_its_word_and_a_kind_by_its_own() -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from ..lang.ir import Beat, Shot, StoryLine
-from ..lang.phrases import BOTH
+from ..lang.pronouns import ALL, BOTH, ONE
 
 if TYPE_CHECKING:
     from .types import BuiltShot
@@ -14,9 +14,11 @@ if TYPE_CHECKING:
 def beat_words(beat: Beat) -> str:
     """What somebody does, as the script says it: ``anna gives ben the cup``; of what no script says, ``anna
     give cup to ben``, without a target that goes without saying."""
-    said = " ".join(beat.span.text.strip().removeprefix("(").removesuffix(")").split())
-    if said.split(" ")[0] in (beat.character, *BOTH):
-        return said
+    said = beat.span.text.strip().removeprefix("(").removesuffix(")").split()
+    if said[0] in ONE:
+        return " ".join((beat.character, *said[1:]))
+    if said[0] in (beat.character, *BOTH, *ALL) or said[1:2] == ["and"]:
+        return " ".join(said)
     words = [beat.character, beat.action]
     if beat.target is not None and not beat.target.implied:
         words.append(beat.target.written)

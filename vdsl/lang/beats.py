@@ -7,8 +7,9 @@ left are one or two targets, the second after a word like ``to`` or ``with``. A 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import replace
+from itertools import pairwise
 
 from runtime.motion.manner import MANNERS
 
@@ -17,10 +18,11 @@ from .catalog import CatalogLike
 from .definitions.types import DefinitionBase
 from .diagnostics import Report, listing, nearest
 from .ir import Beat, Target
+from .pronouns import Mentions
 from .scope import Scope
 from .source import Span
 
-_MOST_ACTION_WORDS = 4
+_MOST_ACTION_WORDS = 5
 _MOST_LISTED = 30
 #: `pour jug into glass` and `pour glass from jug` are one: what is in the hand is the second target.
 _INTO = ("to", "in", "into", "on", "onto")
@@ -33,32 +35,34 @@ class BeatReader:
     """Reads beats of one scene. ``scope`` is None where the scene's set is unknown (then no targets are)."""
 
     def __init__(
-        self, catalog: CatalogLike, characters: tuple[str, ...], scope: Scope | None, report: Report
+        self,
+        catalog: CatalogLike,
+        characters: tuple[str, ...],
+        scope: Scope | None,
+        report: Report,
+        mentions: Mentions | None = None,
     ) -> None:
         self.catalog = catalog
         self.characters = characters
         self.scope = scope
         self.report = report
         self.bring: Callable[[str, Span, str], Target | None] | None = None
-        self.about: tuple[str, ...] = characters  # of them, who is in the scene
-        self.partner = ""  # with whom who acts does it, where two are named: `anna and ben dance`
-        self._who: str | None = None
+        self.mentions = mentions or Mentions(characters)
         self._said: tuple[ast.Name, ...] = ()
-        self._mentioned: tuple[str, ...] = ()  # people, who was spoken of last first
         self._it: tuple[str, ...] = ()  # the name of the thing that was spoken of last
-        self.bodies: Mapping[str, str] = {}  # by character: feminine or masculine, where that is known
         self._actions = {words.fold(word): name for word, name in catalog.synonyms("action").items()}
         self._actions |= {words.fold(name): name for name in catalog.names("action")}
 
     def read(self, node: ast.BeatNode) -> Beat | None:
         character, self._said = self._character(node), node.words
-        self._who = character
+        mentions = self.mentions
+        mentions.who = character
         node, manner = self._manner(node)
         possessed = next((w.text for w in node.words if w.text in ("her", "his", "their")), "")
-        spoken_of = self._spoken_of(possessed)
-        known = phrases.Known(self.characters, self._spoken_of, self._it, self._is_action)
+        spoken_of = mentions.meant(possessed)
+        known = phrases.Known(self.characters, mentions.meant, self._it, self._is_action)
         node = replace(node, words=phrases.plain(node.words, known))
-        self._mention(node.words)
+        mentions.read(character, [word.text for word in node.words if word.text in self.characters])
         if len(node.words) < 2:
             self.report.error(
                 "VDS070",
@@ -74,14 +78,14 @@ class BeatReader:
         rest = phrases.targets_alone(node.words[1 + used :], self._is_name)
         if getattr(definition, "against", 0.0):
             rest = phrases.without_walls(rest, self._is_name)
-        named = None if definition is None else self._targets(rest, definition)
+        named = None if definition is None else self._targets(rest, definition, node.words[used])
         link = next((w.text for w in rest[1:] if w.text in words.PREPOSITIONS), "")
         if definition is None or named is None or character is None:
             return None
         if not named and self.scope is not None:
             unsaid = (self.scope.first(word, node.span) for word in getattr(definition, "otherwise", ()))
             named = [target for target in unsaid if target is not None][:1]
-        whom = spoken_of if possessed else self._other()
+        whom = spoken_of if possessed else mentions.other()
         if not named and whom and self.takes_somebody(action):
             named = [Target("character", (whom,), whom, node.span, implied=True)]
         things = (t for t in named if t.kind == "object" and not t.implied)
@@ -120,28 +124,6 @@ class BeatReader:
             return word.text
         unknown_character(word, self.characters, self.report)
         return None
-
-    def _mention(self, said: tuple[ast.Name, ...]) -> None:
-        now = [word.text for word in reversed(said) if word.text in self.characters]
-        self._mentioned = tuple(dict.fromkeys((*now, *self._mentioned)))
-
-    def _spoken_of(self, pronoun: str = "") -> str:
-        """Whom ``him`` means: of those whom it may mean the only one who is about besides who acts, or who
-        was spoken of last; "" for nobody."""
-        if self.partner and not pronoun:
-            return self.partner
-        body = {"her": "feminine", "him": "masculine", "his": "masculine"}.get(pronoun, "")
-        others = [name for name in self.about if name != self._who]
-        may = [name for name in others if not body or self.bodies.get(name, body) == body]
-        last = next((name for name in self._mentioned if name in may), "")
-        return may[0] if len(may) == 1 else last or ("" if len(others) != 1 else others[0])
-
-    def _other(self) -> str:
-        """With whom it is done, else the only one who is about besides who acts; "" where there is none."""
-        if self.partner:
-            return self.partner
-        others = [name for name in self.about if name != self._who]
-        return others[0] if len(others) == 1 else ""
 
     def _manner(self, node: ast.BeatNode) -> tuple[ast.BeatNode, str]:
         """The beat without its word for the manner, and that word."""
@@ -232,13 +214,16 @@ class BeatReader:
 
     # -- to what ---------------------------------------------------------------------
 
-    def _targets(self, rest: tuple[ast.Name, ...], definition: DefinitionBase) -> list[Target] | None:
-        """The targets named; None where one was reported."""
+    def _targets(
+        self, rest: tuple[ast.Name, ...], definition: DefinitionBase, verb: ast.Name
+    ) -> list[Target] | None:
+        """The targets named; None where one was reported. verb: the last word of the action"""
         groups = self._split(rest)
         if groups is None:
             return None
-        if len(groups) == 1 and len(groups[0]) > 1 and self._is_given_to(groups[0][0], definition):
-            groups = [groups[0][1:], groups[0][:1]]  # `give ben the cup`
+        if groups and len(groups[0]) > 1 and self._is_given_to(groups[0][0], definition):
+            groups = [groups[0][1:], groups[0][:1], *groups[1:]]  # `give ben the cup`
+        groups = self._taken(groups, (verb, *rest), definition)
         if getattr(definition, "anything", False):  # `write poem` is done at a desk
             groups = [g for g in groups if not self._is_nowhere(g) or self._is_like_something(g)]
         if len(groups) > 2:
@@ -249,6 +234,24 @@ class BeatReader:
         found = [self.target(group, n == held) for n, group in enumerate(groups)]
         known = [target for target in found if target is not None]
         return known if len(known) == len(found) else None
+
+    def _taken(
+        self, groups: list[list[ast.Name]], said: tuple[ast.Name, ...], definition: DefinitionBase
+    ) -> list[list[ast.Name]]:
+        """Without where it is done, where an action takes no more targets: `peeks at her over the paper`."""
+        takes = [getattr(definition, name, "none") != "none" for name in ("target", "second")]
+        most = 2 if takes[1] else int(takes[0])
+        before = {id(word): last for last, word in pairwise(said) if last.text in words.WHERE}
+        while len(groups) > most and id(groups[-1][0]) in before:
+            *groups, last = groups
+            span = before[id(last[0])].span.to(last[-1].span)
+            self.report.warn(
+                "VDS082",
+                span,
+                label=f"`{span.text}` is left out",
+                help=f"`{getattr(definition, 'name', 'it')}` is done to no more",
+            )
+        return groups
 
     def _is_given_to(self, word: ast.Name, definition: DefinitionBase) -> bool:
         """Whether somebody named before a thing is whom it is given to, shown to, thrown to."""
@@ -275,18 +278,23 @@ class BeatReader:
         return groups
 
     def target(self, group: list[ast.Name], held: bool = False) -> Target | None:
-        """One target by its word, or by several words that are one name (``bus stop``).
+        """One target by its word, or by several words that are one name (``bus stop``), or end in one (``old
+        car``).
 
         held: it is to be in a hand, so that what the scene has not is brought, if it is a prop
         """
+        group = self._without_adjectives(group, held)
         if len(group) > 1 and self.scope is not None:
             for joint in ("_", "-"):
                 parts = (joint.join(name.text for name in group),)
                 if self.scope.look_up(parts):
                     return self._resolve(ast.Name(parts, group[0].span.to(group[-1].span)))
-        if held and self.bring is not None and self._who is not None and self._is_nowhere(group):
+            inside = ast.Name(tuple(name.text for name in group), group[0].span.to(group[-1].span))
+            if self.scope.look_up(inside.parts):  # `kitchen door`
+                return self._resolve(inside)
+        if held and self.bring is not None and self.mentions.who is not None and self._is_nowhere(group):
             span = group[0].span.to(group[-1].span)
-            brought = self.bring("_".join(name.text for name in group), span, self._who)
+            brought = self.bring("_".join(name.text for name in group), span, self.mentions.who)
             if brought is not None:
                 return brought
         if len(group) > 1:
@@ -297,6 +305,38 @@ class BeatReader:
             self.report.error("VDS073", group[1].span, label=f"`{names}` is not one name", help=help)
             return None
         return self._resolve(group[0])
+
+    def _without_adjectives(self, group: list[ast.Name], held: bool) -> list[ast.Name]:
+        """The words from the first on with which they are a name, after words for what that is like."""
+
+        props = {*self.catalog.names("prop"), *self.catalog.synonyms("prop")}
+
+        def known(words: list[ast.Name]) -> bool:
+            joined = "_".join(name.text for name in words)
+            return (
+                any(
+                    self._is_name(ast.Name((name,), words[0].span))
+                    for name in (joined, joined.replace("_", "-"))
+                )
+                or (len(words) == 1 and not self._is_nowhere(words))
+                or (self.scope is not None and bool(self.scope.look_up(tuple(name.text for name in words))))
+                or (held and (joined.replace("_", "-") in props or joined in props))
+            )
+
+        if len(group) < 2 or self.scope is None or any(name.text == "and" for name in group) or known(group):
+            return group
+        first = next((k for k in range(1, len(group)) if known(group[k:])), 0)
+        if any(known([word]) for word in group[:first]):  # two names: `anna a note`
+            return group
+        if first:
+            said, rest = (" ".join(name.text for name in part) for part in (group[:first], group[first:]))
+            self.report.warn(
+                "VDS082",
+                group[0].span.to(group[first - 1].span),
+                label=f"`{said}` is left out",
+                help=f"`{rest}` looks as it is defined",
+            )
+        return group[first:]
 
     def _two_lines(self) -> str:
         """What to write for a line that says two things."""
@@ -313,7 +353,8 @@ class BeatReader:
         if self.scope is None or group[0].text in self.characters:
             return False
         parts = group[0].parts if len(group) == 1 else ("_".join(name.text for name in group),)
-        own = self.scope.carried_by(self._who, parts[-1]) if self._who and len(parts) == 1 else None
+        who = self.mentions.who
+        own = self.scope.carried_by(who, parts[-1]) if who and len(parts) == 1 else None
         return own is None and not self.scope.look_up(parts)
 
     def _is_like_something(self, group: list[ast.Name]) -> bool:
@@ -322,7 +363,8 @@ class BeatReader:
         return any(nearest(name.text, known) is not None for name in group)
 
     def _resolve(self, name: ast.Name) -> Target | None:
-        own = self.scope.carried_by(self._who, name.text) if self.scope and self._who else None
+        who = self.mentions.who
+        own = self.scope.carried_by(who, name.text) if self.scope and who else None
         if own is not None:
             return Target("object", own.path, name.text, name.span)
         return resolve(name, self.characters, self.scope, self.report, any_of=True)

@@ -21,6 +21,7 @@ from .ids import Ids
 from .ir import Beat, Character, Scene, Storyboard, StoryLine, Target
 from .lookup import Lookup, Setting
 from .placement import SceneBeingRead, appear, place, someone_or_something
+from .pronouns import Mentions
 from .scope import Scope
 from .settings import Settings, read_header
 from .shots import DEFAULT_PROPOSALS, DEFAULT_STYLE, DEFAULT_TAKES, Defaults, LineContext, read_shots
@@ -299,10 +300,11 @@ class _Checker:
             return
         names = tuple(self.characters)
         if stage.reader is None or stage.reader.characters != names:
-            stage.reader = BeatReader(self.catalog, names, stage.scope, self.report)
-            stage.reader.bodies = self._bodies()
-            stage.reader.about = tuple(name for name in names if name in stage.members)
+            mentions = stage.reader.mentions if stage.reader is not None else Mentions()
+            stage.reader = BeatReader(self.catalog, names, stage.scope, self.report, mentions)
+            stage.reader.mentions.bodies = self._bodies()
             stage.reader.bring = lambda word, span, who: bring_named(word, span, who, stage, self.catalog)
+        stage.reader.mentions.about = tuple(name for name in names if name in stage.members) or names
         done = tuple(beat for each in node.beats for beat in self._beats(stage.reader, each, stage))
         self._together(done)
         for beat in done:
@@ -330,15 +332,15 @@ class _Checker:
     def _beats(self, reader: BeatReader, node: ast.BeatNode, stage: SceneBeingRead) -> tuple[Beat, ...]:
         """What a beat says: one, or where it is of several people, one each, if it is nothing two do to each
         other."""
-        nodes, one_by_one = phrases.each_of(node, reader.about, tuple(self.characters))
+        nodes, together = phrases.each_of(node, reader.mentions, tuple(self.characters))
         who = [each.words[0].text for each in nodes]
         found: list[Beat | None] = []
         for k, each in enumerate(nodes):
-            reader.partner = who[1 - k] if one_by_one and len(who) == 2 else ""
+            reader.mentions.partner = who[1 - k] if together and len(who) == 2 else ""
             found.append(self._beat(reader, each, stage))
             if found[-1] is None or (len(nodes) == 2 and reader.takes_somebody(found[-1].action)):
                 break
-        reader.partner = ""
+        reader.mentions.partner = ""
         for other in nodes[len(found) :] if found[-1] is not None else ():  # they take part in what is done
             if other.words[0].text in self.characters:
                 appear(other.words[0], stage, self.report)

@@ -501,6 +501,13 @@ CODES: dict[str, Code] = {
         "carl at counter holding sofa",
         "carl at counter holding cup",
     ),
+    "VDS082": Code(
+        "a word that does not show",
+        "A thing looks as it is defined. Words before its name that are no part of it say nothing to a picture, and "
+        "are left out.",
+        "(anna walk old table)",
+        "(anna walk table)",
+    ),
     "VDS079": Code(
         "someone has no place yet",
         "Someone takes part in a scene and has not been placed in it. They are put at the scene's first free spot; "

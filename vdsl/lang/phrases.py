@@ -11,6 +11,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 from . import ast
+from .pronouns import ALL, BOTH, ONE, Mentions
 from .words import ARTICLES, PREPOSITIONS, plain_forms
 
 #: Before a verb, by itself or with ``to``, they say that it begins or goes on.
@@ -32,7 +33,12 @@ PARTICLES = (
     "apart",
 )
 #: They say when, or how often; never what.
-ADVERBS = ("again", "suddenly", "then", "finally", "together", "back", "still", "now", "just", "too")
+ADVERBS = (
+    "again", "suddenly", "then", "finally", "together", "back", "still", "now", "just", "too",
+    "alone", "apart", "aside", "barefoot", "closed", "early", "late", "open", "shut", "sideways", "straight",
+    "there", "here", "upside", "one", "two", "all", "own", "once", "last", "long", "alike", "first",
+    "himself", "herself", "themselves", "itself",
+)  # fmt: skip
 #: Several words that are one preposition.
 _JOINED = {
     ("in", "front", "of"): "before",
@@ -45,10 +51,8 @@ _JOINED = {
     ("back", "to"): "to",
 }
 _LONGEST = max(len(words) for words in _JOINED)
-#: Who acts is said by name.
+#: Words for who acts that are no names.
 PRONOUNS = ("he", "she", "they", "it", "both", "everyone", "everybody", "all", "we", "i", "you")
-#: But for these, where two are about: they do it both, or to each other.
-BOTH = ("they", "both")
 #: Whom it is done to: the one who was spoken of last.
 _OBJECTS = ("him", "her", "them")
 _EACH_OTHER = (("each", "other"), ("one", "another"))
@@ -68,11 +72,20 @@ _EVERYWHERE = (
     "sand",
     "carpet",
 )
+#: They say how, when or why something is done: `with a sigh`, `at the last second`, `for a long time`.
+_HOW = {
+    "accident", "anger", "care", "dark", "darkness", "despair", "disgust", "disbelief", "effort",
+    "fear", "force", "fun", "grin", "hurry", "joy", "kick", "laugh", "might", "minute", "moment", "nod",
+    "pain", "panic", "prayer", "purpose", "rage", "relief", "scream", "second", "shrug", "sigh", "silence",
+    "smile", "strength", "surprise", "tear", "tears", "time", "while",
+}  # fmt: skip
 #: Parts of a body: an action knows which it needs.
 _BODY = {
     "head", "face", "eyes", "eye", "ears", "nose", "mouth", "lips", "cheek", "cheeks", "chin", "forehead",
-    "hair", "neck", "shoulder", "shoulders", "back", "chest", "belly", "arm", "arms", "elbow", "hand",
-    "hands", "finger", "fingers", "fist", "fists", "wrist", "leg", "legs", "knee", "knees", "foot", "feet",
+    "hair", "lip", "ear", "throat", "tongue", "teeth", "brow", "waist", "hip", "hips", "thigh", "toe", "toes",
+    "heel", "heels", "thumb", "palm", "palms", "sleeve", "collar", "pocket", "pockets", "neck", "shoulder",
+    "shoulders", "back", "chest", "belly", "arm", "arms", "elbow", "hand", "hands", "finger", "fingers",
+    "fist", "fists", "wrist", "leg", "legs", "knee", "knees", "foot", "feet",
 }  # fmt: skip
 
 Words = tuple[ast.Name, ...]
@@ -97,40 +110,85 @@ def plain(said: Words, known: Known) -> Words:
     character, rest = said[:1], _without(_with_names(said[1:], known), known.named)
     rest = _one_each(_without_auxiliary(rest, known.is_action), known.is_action)
     while len(rest) > 1 and rest[-1].text in ADVERBS and rest[-1].text not in (*PARTICLES, *known.named):
-        rest = rest[:-1]
+        if rest[-2].text in PREPOSITIONS and rest[-2].text not in PARTICLES:  # `to herself`
+            break
+        twice = len(rest) > 3 and rest[-2].text == "and" and rest[-3].text == rest[-1].text
+        rest = rest[:-3] if twice else rest[:-1]  # `again and again`
     return character + _verb_first(rest, known)
 
 
 def each_of(
-    node: ast.BeatNode, about: Sequence[str], named: Sequence[str]
+    node: ast.BeatNode, mentions: Mentions, named: Sequence[str]
 ) -> tuple[tuple[ast.BeatNode, ...], bool]:
-    """The beat, or where it is of ``anna and ben``, or of ``they`` and two people are about, the same of each
-    of them; and whether they are named one by one."""
+    """The beat with a name for who acts, or where it is of several, as of ``anna and ben`` or ``they``, the
+    same of each of them; and whether these do it with each other rather than with whoever else is about."""
     first, count = node.words[0], 1
     while count + 1 < len(node.words) and node.words[count].text == "and" and "and" not in named:
         count += 2
     if count > 1:
-        who, done = node.words[:count:2], node.words[count:]
-        return tuple(replace(node, words=(one, *done)) for one in who), True
-    if first.text not in BOTH or first.text in named or len(about) != 2:
+        return _done_by(node, node.words[:count:2], node.words[count:]), True
+    if first.text in named:
         return (node,), False
-    both = (ast.Name((one,), first.span) for one in about)
-    return tuple(replace(node, words=(one, *node.words[1:])) for one in both), False
+    rest = node.words[1:]
+    if " ".join(word.text for word in node.words[:2]) in ALL:
+        first, rest = ast.Name(("all",), first.span.to(rest[0].span)), rest[1:]
+    who: tuple[str, ...] = ()
+    if first.text in ALL:  # `they all look at anna`: all others
+        who = tuple(name for name in mentions.about if all(word.text != name for word in rest))
+    elif first.text in BOTH:
+        who = mentions.two()
+    elif first.text in ONE:
+        who = (mentions.acting(first.text),)
+    names = tuple(ast.Name((name,), first.span) for name in who if name)
+    if not names:
+        return (node,), False
+    return _done_by(node, names, rest), len(names) == 2 and len(mentions.about) != 2
+
+
+def _done_by(node: ast.BeatNode, who: Words, rest: Words) -> tuple[ast.BeatNode, ...]:
+    return tuple(replace(node, words=(one, *rest)) for one in who)
 
 
 def targets_alone(rest: Words, is_name: Callable[[ast.Name], bool]) -> Words:
-    """What follows an action without adverbs, without parts of bodies and what is everywhere, as in ``on the
-    cheek`` and ``on the floor``, without what a thing is full of, and without a particle at its end."""
-    kept: Words = ()
+    """What follows an action without adverbs, without what says how, when or where in the world, as ``with a
+    sigh``, ``on the cheek`` and ``on the floor``, without what a thing is full of, and without a particle at
+    its end."""
+    groups: list[Words] = [()]
     for word in rest:
-        of = len(kept) > 1 and kept[-1].text == "of"  # `a glass of water` is a glass
-        if is_name(word) or not (of or word.text in (*ADVERBS, *_BODY, *_EVERYWHERE)):
-            kept = (*kept, word)
-        elif word.text not in ADVERBS and kept and kept[-1].text in PREPOSITIONS:
-            kept = kept[:-1]
+        if word.text in PREPOSITIONS and not is_name(word):
+            groups.append(())
+        groups[-1] = (*groups[-1], word)
+    kept: Words = ()
+    for group in groups:
+        begins = group[:1] if group[:1] != () and group[0].text in PREPOSITIONS else ()
+        if begins != () and is_name(group[0]):
+            begins = ()
+        kept = (*kept, *_target_of(begins, group[len(begins) :], bool(kept), is_name))
     while kept and kept[-1].text in PARTICLES and not is_name(kept[-1]):
         kept = kept[:-1]
     return kept
+
+
+def _target_of(begins: Words, said: Words, later: bool, is_name: Callable[[ast.Name], bool]) -> Words:
+    """Of a preposition and what follows it, or of what follows a verb, what names a target; later: whether
+    something was named before."""
+    if begins and not said:
+        return begins
+    if begins and later and begins[0].text == "of":  # `a glass of water` is a glass
+        return (*begins, *names) if (names := tuple(w for w in said if is_name(w))) else ()
+    words = said
+    while words and not is_name(words[-1]) and _says_how(words[-1]) and words[-1].text not in _BODY:
+        words = words[:-1]
+    words = tuple(w for k, w in enumerate(words) if is_name(w) or not _says_how(w) or k + 1 == len(words))
+    named = any(is_name(word) for word in words)
+    if not named and words and words[-1].text in (*_BODY, *_HOW, *_EVERYWHERE):
+        return ()  # `greasy hands`, `with a heavy sigh`
+    words = tuple(word for word in words if is_name(word) or word.text not in (*_BODY, *_HOW, *_EVERYWHERE))
+    return (*begins, *words) if words else ()
+
+
+def _says_how(word: ast.Name) -> bool:
+    return word.text in ADVERBS or word.text.endswith("ly")
 
 
 def without_walls(rest: Words, is_name: Callable[[ast.Name], bool]) -> Words:
@@ -158,6 +216,9 @@ def _with_names(said: Words, known: Known) -> Words:
         meant: tuple[str, ...] = known.it if word.text == "it" else ()
         if word.text in _OBJECTS and (word.text != "her" or ends) and known.them(word.text):
             meant = (known.them(word.text),)
+        if word.text in _OBJECTS and ends and not meant and out and out[-1].text in PREPOSITIONS:
+            out.pop()  # `behind her`, where she is who acts
+            continue
         out.append(ast.Name(meant, word.span) if meant and word.text not in known.named else word)
     return tuple(out)
 

@@ -184,7 +184,12 @@ RIGS = ("cinema", "paper")
 PREPOSITIONS = (
     "to", "at", "with", "from", "in", "into", "on", "onto", "of", "out", "off", "through", "toward",
     "towards", "for", "about", "against", "beside", "near", "by", "up", "down", "behind", "before", "under",
-    "over", "around", "across", "opposite", "past", "along", "inside", "after",
+    "over", "around", "across", "opposite", "past", "along", "inside", "after", "between", "above", "below",
+)  # fmt: skip
+#: Those that say no more than where something is done, if that is all an action has to do with it.
+WHERE = (
+    "in", "on", "through", "against", "beside", "near", "by", "behind", "before", "under", "over", "around",
+    "across", "opposite", "past", "along", "inside", "between", "above", "below",
 )  # fmt: skip
 #: Words before a name that say nothing here: articles, and whose it is.
 ARTICLES = ("the", "a", "an", "some", "her", "his", "their", "its", "my", "your", "our")

@@ -1,0 +1,79 @@
+"""Who is meant by ``she``, ``him``, ``they`` and ``each other``: who acted or was spoken of last in a scene.
+
+Assumes lines in the order they are written in. Guarantees that what a word means hangs on the lines before it
+in its scene alone, and that a word that may mean nobody means nobody.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+
+_BODIES = {
+    "he": "masculine", "him": "masculine", "his": "masculine",
+    "she": "feminine", "her": "feminine",
+}  # fmt: skip
+#: Who acts may be said so, where somebody acted or was spoken of before.
+ONE = ("he", "she")
+#: Two who are about, or acted or were spoken of last: they do it both, or to each other.
+BOTH = ("they", "both")
+#: All who are about.
+ALL = ("everybody", "everyone", "all", "they all")
+
+
+@dataclass
+class Mentions:
+    """People as they are spoken of in a scene.
+
+    about: who is in the scene; bodies: feminine or masculine, where that is known; partner: with whom who
+    acts does it, where two are named; who: who acts in the line that is read
+    """
+
+    about: tuple[str, ...] = ()
+    bodies: Mapping[str, str] = field(default_factory=dict)
+    partner: str = ""
+    who: str | None = None
+    _acted: tuple[str, ...] = ()  # who acted last first
+    _spoken_of: tuple[str, ...] = ()  # who was spoken of last first, who acts after all others of a line
+
+    def read(self, acting: str | None, named: Sequence[str]) -> None:
+        """Take note of a line's people; named: in their order."""
+        now = [name for name in reversed(named) if name != acting] + ([acting] if acting else [])
+        self._spoken_of = tuple(dict.fromkeys((*now, *self._spoken_of)))
+        if acting:
+            self._acted = tuple(dict.fromkeys((acting, *self._acted)))
+
+    def acting(self, pronoun: str) -> str:
+        """Who acts by ``he`` or ``she``: who acted last of those it may mean, else who was spoken of last,
+        else the only one it may mean; "" for nobody."""
+        may = [name for name in self.about if self._may(pronoun, name)]
+        last = next((name for name in (*self._acted, *self._spoken_of) if name in may), "")
+        return last or (may[0] if len(may) == 1 else "")
+
+    def two(self) -> tuple[str, ...]:
+        """Who ``they`` are: the two who are about, or of more those who acted or were spoken of last."""
+        if len(self.about) == 2:
+            return self.about
+        last = self._spoken_of[:2]
+        return tuple(name for name in self.about if name in last) if len(last) == 2 else ()
+
+    def meant(self, pronoun: str = "") -> str:
+        """Whom ``him`` means: of those whom it may mean the only one who is about besides who acts, or who
+        was spoken of last; "" for nobody. Without a word the one with whom something is done."""
+        if self.partner and not pronoun:
+            return self.partner
+        others = [name for name in self.about if name != self.who]
+        may = [name for name in others if self._may(pronoun, name)]
+        last = next((name for name in self._spoken_of if name in may), "")
+        return may[0] if len(may) == 1 else last
+
+    def other(self) -> str:
+        """With whom it is done, else the only one who is about besides who acts; "" where there is none."""
+        if self.partner:
+            return self.partner
+        others = [name for name in self.about if name != self.who]
+        return others[0] if len(others) == 1 else ""
+
+    def _may(self, pronoun: str, name: str) -> bool:
+        body = _BODIES.get(pronoun, "")
+        return not body or self.bodies.get(name, body) == body

@@ -11,7 +11,7 @@ from dataclasses import replace
 from pathlib import PurePath
 
 from . import ast, phrases
-from .beats import BeatReader, unknown_character
+from .beats import BeatReader
 from .bringing import bring, bring_named
 from .catalog import CatalogLike
 from .diagnostics import Report
@@ -26,6 +26,7 @@ from .scope import Scope
 from .settings import Settings, read_header
 from .shots import DEFAULT_PROPOSALS, DEFAULT_STYLE, DEFAULT_TAKES, Defaults, LineContext, read_shots
 from .source import Span
+from .targets import unknown_character
 from .transitions import Joins
 
 
@@ -303,7 +304,9 @@ class _Checker:
             mentions = stage.reader.mentions if stage.reader is not None else Mentions()
             stage.reader = BeatReader(self.catalog, names, stage.scope, self.report, mentions)
             stage.reader.mentions.bodies = self._bodies()
-            stage.reader.bring = lambda word, span, who: bring_named(word, span, who, stage, self.catalog)
+            stage.reader.targets.bring = lambda word, span, who: bring_named(
+                word, span, who, stage, self.catalog
+            )
         stage.reader.mentions.about = tuple(name for name in names if name in stage.members) or names
         done = tuple(beat for each in node.beats for beat in self._beats(stage.reader, each, stage))
         self._together(done)

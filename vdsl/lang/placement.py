@@ -9,13 +9,14 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 from . import ast, words
-from .beats import BeatReader, resolve
+from .beats import BeatReader
 from .bringing import held_at_first
 from .diagnostics import Report, listing
 from .hands import Hands
 from .ir import Carried, Placement, Target
 from .scope import Scope
 from .source import Span
+from .targets import resolve
 
 
 @dataclass

@@ -6,12 +6,12 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 from . import ast, words
-from .beats import unknown_character
 from .camera import FREE, CameraWords, read_camera
 from .diagnostics import Report
 from .ids import Ids
 from .ir import MOVEMENT_FAMILIES, RACK, Beat, Shot, Target
 from .options import ShotOptions, read_options
+from .targets import unknown_character
 from .views import read_view
 
 DEFAULT_LENS = (30.0, 80.0)  # the paper's, section 3.2

@@ -6,10 +6,10 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from . import ast, ir
-from .beats import unknown_character
 from .camera import CameraWords
 from .diagnostics import Report, listing
 from .ir import Target
+from .targets import unknown_character
 
 if TYPE_CHECKING:
     from .shots import LineContext

@@ -1,0 +1,296 @@
+"""What an action is done to: the words after it into one or two :class:`vdsl.lang.ir.Target`.
+
+Assumes the words of one line without those that say nothing (:mod:`vdsl.lang.phrases`). Guarantees that what
+is no target is reported at its place, and what does not show is left out with a warning.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from itertools import pairwise
+
+from . import ast, phrases, words
+from .catalog import CatalogLike
+from .definitions.types import DefinitionBase
+from .diagnostics import Report, listing, nearest
+from .ir import Target
+from .scope import Scope
+from .source import Span
+
+KIND_WORDS = {"place": "a place", "object": "a thing", "character": "someone"}
+
+
+class TargetReader:
+    """Reads the targets of the lines of one scene.
+
+    scope: of the scene, None where its set is unknown (then no targets are); bring: what somebody takes out
+    who has not got it, as a target, from its word, where that stands and who it is; None where that cannot be
+    """
+
+    def __init__(
+        self, catalog: CatalogLike, characters: tuple[str, ...], scope: Scope | None, report: Report
+    ) -> None:
+        self.catalog = catalog
+        self.characters = characters
+        self.scope = scope
+        self.report = report
+        self.bring: Callable[[str, Span, str], Target | None] | None = None
+        self.who: str | None = None  # who acts in the line that is read
+        self.said: tuple[ast.Name, ...] = ()  # all words of it
+
+    def is_name(self, word: ast.Name) -> bool:
+        """Whether a word is somebody's, or something's in the scene."""
+        known = self.scope is not None and bool(self.scope.look_up(word.parts))
+        return known or word.text in self.characters
+
+    def named(
+        self, rest: tuple[ast.Name, ...], definition: DefinitionBase, verb: ast.Name
+    ) -> list[Target] | None:
+        """The targets named; None where one was reported. verb: the last word of the action"""
+        groups = self._split(rest)
+        if groups is None:
+            return None
+        if groups and len(groups[0]) > 1 and self._is_given_to(groups[0][0], definition):
+            groups = [groups[0][1:], groups[0][:1], *groups[1:]]  # `give ben the cup`
+        groups = self._taken(groups, (verb, *rest), definition)
+        if getattr(definition, "anything", False):  # `write poem` is done at a desk
+            groups = [g for g in groups if not self._is_nowhere(g) or self._is_like_something(g)]
+        if len(groups) > 2:
+            self.report.error("VDS073", groups[2][0].span, label="an action has two targets at most")
+            return None
+        needs, with_first = getattr(definition, "needs", "none"), rest[:1] != () and rest[0].text == "with"
+        held = {"target": 0, "any": 0, "second": 0 if with_first and len(groups) == 1 else 1}.get(needs)
+        found = [self._target(group, n == held) for n, group in enumerate(groups)]
+        known = [target for target in found if target is not None]
+        return known if len(known) == len(found) else None
+
+    def _taken(
+        self, groups: list[list[ast.Name]], said: tuple[ast.Name, ...], definition: DefinitionBase
+    ) -> list[list[ast.Name]]:
+        """Without where it is done, where an action takes no more targets: `peeks at her over the paper`."""
+        takes = [getattr(definition, name, "none") != "none" for name in ("target", "second")]
+        most = 2 if takes[1] else int(takes[0])
+        before = {id(word): last for last, word in pairwise(said) if last.text in words.WHERE}
+        while len(groups) > most and id(groups[-1][0]) in before:
+            *groups, last = groups
+            span = before[id(last[0])].span.to(last[-1].span)
+            self.report.warn(
+                "VDS082",
+                span,
+                label=f"`{span.text}` is left out",
+                help=f"`{getattr(definition, 'name', 'it')}` is done to no more",
+            )
+        return groups
+
+    def _is_given_to(self, word: ast.Name, definition: DefinitionBase) -> bool:
+        """Whether somebody named before a thing is whom it is given to, shown to, thrown to."""
+        second = getattr(definition, "second", "none")
+        also: tuple[str, ...] = tuple(getattr(definition, "second_kinds", ()))
+        return word.text in self.characters and second != "none" and (not also or "character" in also)
+
+    def _split(self, rest: tuple[ast.Name, ...]) -> list[list[ast.Name]] | None:
+        """Groups of words that name one target each, without prepositions."""
+        groups: list[list[ast.Name]] = []
+        fresh = True
+        last: ast.Name | None = None
+        for name in rest:
+            if name.text in words.PREPOSITIONS and not self.is_name(name):
+                fresh, last = True, name
+            elif fresh:
+                groups.append([name])
+                fresh, last = False, None
+            else:
+                groups[-1].append(name)
+        if last is not None:
+            self.report.error("VDS072", last.span, label=f"a name is missing after `{last.text}`")
+            return None
+        return groups
+
+    def _target(self, group: list[ast.Name], held: bool = False) -> Target | None:
+        """One target by its word, or by several words that are one name (``bus stop``), or end in one (``old
+        car``).
+
+        held: it is to be in a hand, so that what the scene has not is brought, if it is a prop
+        """
+        group = self._without_adjectives(group, held)
+        if len(group) > 1 and self.scope is not None:
+            for joint in ("_", "-"):
+                parts = (joint.join(name.text for name in group),)
+                if self.scope.look_up(parts):
+                    return self._resolve(ast.Name(parts, group[0].span.to(group[-1].span)))
+            inside = ast.Name(tuple(name.text for name in group), group[0].span.to(group[-1].span))
+            if self.scope.look_up(inside.parts):  # `kitchen door`
+                return self._resolve(inside)
+        if held and self.bring is not None and self.who is not None and self._is_nowhere(group):
+            span = group[0].span.to(group[-1].span)
+            brought = self.bring("_".join(name.text for name in group), span, self.who)
+            if brought is not None:
+                return brought
+        if len(group) > 1:
+            names = group[0].span.to(group[-1].span).text
+            help = f"a second target follows a word like `to`: `{group[0].text} to {group[1].text}`"
+            if any(name.text == "and" for name in group):
+                help = self._two_lines()
+            self.report.error("VDS073", group[1].span, label=f"`{names}` is not one name", help=help)
+            return None
+        return self._resolve(group[0])
+
+    def _without_adjectives(self, group: list[ast.Name], held: bool) -> list[ast.Name]:
+        """The words from the first on with which they are a name, after words for what that is like."""
+
+        props = {*self.catalog.names("prop"), *self.catalog.synonyms("prop")}
+
+        def known(words: list[ast.Name]) -> bool:
+            joined = "_".join(name.text for name in words)
+            return (
+                any(
+                    self.is_name(ast.Name((name,), words[0].span))
+                    for name in (joined, joined.replace("_", "-"))
+                )
+                or (len(words) == 1 and not self._is_nowhere(words))
+                or (self.scope is not None and bool(self.scope.look_up(tuple(name.text for name in words))))
+                or (held and (joined.replace("_", "-") in props or joined in props))
+            )
+
+        if len(group) < 2 or self.scope is None or any(name.text == "and" for name in group) or known(group):
+            return group
+        first = next((k for k in range(1, len(group)) if known(group[k:])), 0)
+        if any(known([word]) for word in group[:first]):  # two names: `anna a note`
+            return group
+        if first:
+            said, rest = (" ".join(name.text for name in part) for part in (group[:first], group[first:]))
+            self.report.warn(
+                "VDS082",
+                group[0].span.to(group[first - 1].span),
+                label=f"`{said}` is left out",
+                help=f"`{rest}` looks as it is defined",
+            )
+        return group[first:]
+
+    def _two_lines(self) -> str:
+        """What to write for a line that says two things."""
+        said = [name.text for name in self.said]
+        at = said.index("and")
+        named = [word in self.characters for word in said]
+        first = said[: at - 1] if all(named[at - 1 : at + 2 : 2]) else said[:1]  # `looks at anna and ben`
+        lines = (said[:at], [*first, *said[at + 1 :]])
+        one, other = (f"`({' '.join(words)})`" for words in lines)
+        return f"a line says one thing; were these two meant, one below the other? {one} {other}"
+
+    def _is_nowhere(self, group: list[ast.Name]) -> bool:
+        """Whether words name neither anybody nor anything in the scene."""
+        if self.scope is None or group[0].text in self.characters:
+            return False
+        parts = group[0].parts if len(group) == 1 else ("_".join(name.text for name in group),)
+        who = self.who
+        own = self.scope.carried_by(who, parts[-1]) if who and len(parts) == 1 else None
+        return own is None and not self.scope.look_up(parts)
+
+    def _is_like_something(self, group: list[ast.Name]) -> bool:
+        """Whether words are probably a name in the scene, or somebody's, not quite written as it is."""
+        known = (*self.characters, *(self.scope.known() if self.scope is not None else ()))
+        return any(nearest(name.text, known) is not None for name in group)
+
+    def _resolve(self, name: ast.Name) -> Target | None:
+        who = self.who
+        own = self.scope.carried_by(who, name.text) if self.scope and who else None
+        if own is not None:
+            return Target("object", own.path, name.text, name.span)
+        return resolve(name, self.characters, self.scope, self.report, any_of=True)
+
+    def fits(self, node: ast.BeatNode, action: str, definition: DefinitionBase, named: list[Target]) -> bool:
+        """Whether the targets are what the action takes."""
+        wants: str = getattr(definition, "target", "optional")
+        second: str = getattr(definition, "second", "none")
+        kinds: tuple[str, ...] = tuple(getattr(definition, "target_kinds", ()))
+        kind_words = " or ".join(KIND_WORDS.get(kind, kind) for kind in kinds) or "a target"
+        if wants == "required" and not named:
+            self.report.error(
+                "VDS072",
+                node.span,
+                label=f"`{action}` needs {kind_words}",
+                help=f"as in `({node.words[0].text} {action} …)`",
+            )
+            return False
+        if wants == "none" and named:
+            self.report.error(
+                "VDS073", named[0].span, label=f"`{action}` takes no target", help="leave it out"
+            )
+            return False
+        if second == "required" and len(named) == 1:
+            self.report.error(
+                "VDS072",
+                node.span,
+                label=f"`{action}` needs a second target",
+                help=f"as in `({node.words[0].text} {action} {named[0].written} to …)`",
+            )
+            return False
+        if second == "none" and len(named) == 2:
+            self.report.error(
+                "VDS073", named[1].span, label=f"`{action}` takes no second target", help="leave it out"
+            )
+            return False
+        also: tuple[str, ...] = tuple(getattr(definition, "second_kinds", ()))
+        if len(named) == 2 and also and not kind_fits(named[1], also):
+            second_words = " or ".join(KIND_WORDS.get(kind, kind) for kind in also)
+            self.report.error(
+                "VDS074",
+                named[1].span,
+                label=f"the second target of `{action}` is {second_words}",
+                help=f"`{named[1].written}` is {_is(named[1])}",
+            )
+            return False
+        if named and kinds and not kind_fits(named[0], kinds):
+            self.report.error(
+                "VDS074",
+                named[0].span,
+                label=f"`{action}` is done to {kind_words}, `{named[0].written}` is {_is(named[0])}",
+            )
+            return False
+        return True
+
+
+def resolve(
+    name: ast.Name, characters: tuple[str, ...], scope: Scope | None, report: Report, any_of: bool = False
+) -> Target | None:
+    """A character or something in the scene; ``any_of``: of several of one kind the first will do."""
+    if name.text in characters:
+        return Target("character", (name.text,), name.text, name.span)
+    if scope is None:
+        return None
+    near = nearest(name.text, characters)
+    if near is not None and not scope.look_up(name.parts):
+        unknown_character(name, characters, report)
+        return None
+    return scope.find(name, report, any_of)
+
+
+def unknown_character(word: ast.Name, characters: tuple[str, ...], report: Report) -> None:
+    """Report a name that is no character's."""
+    meant = nearest(word.text, characters)
+    if characters:
+        help = f"characters are {listing(characters, last='and')}"
+        if word.text in phrases.PRONOUNS:
+            help = f"say who by name, of {listing(characters, last='and')}"
+    else:
+        help = f"add a line `character {word.text} = woman` above"
+    report.error(
+        "VDS065",
+        word.span,
+        label=f"no character is called `{word.text}`",
+        help=help,
+        suggestion=meant,
+        fix=meant,
+    )
+
+
+def kind_fits(target: Target, kinds: tuple[str, ...]) -> bool:
+    if target.kind == "character":
+        return "character" in kinds
+    if target.kind == "room":
+        return "place" in kinds
+    return "place" in kinds or "object" in kinds
+
+
+def _is(target: Target) -> str:
+    return {"character": "someone", "room": "a room", "spot": "a place", "object": "a thing"}[target.kind]

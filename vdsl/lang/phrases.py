@@ -79,6 +79,22 @@ _HOW = {
     "pain", "panic", "prayer", "purpose", "rage", "relief", "scream", "second", "shrug", "sigh", "silence",
     "smile", "strength", "surprise", "tear", "tears", "time", "while",
 }  # fmt: skip
+#: How much there is of something.
+_MEASURES = (
+    "bit",
+    "bunch",
+    "couple",
+    "drop",
+    "handful",
+    "heap",
+    "lot",
+    "lots",
+    "pair",
+    "piece",
+    "pile",
+    "sip",
+    "stack",
+)
 #: Parts of a body: an action knows which it needs.
 _BODY = {
     "head", "face", "eyes", "eye", "ears", "nose", "mouth", "lips", "cheek", "cheeks", "chin", "forehead",
@@ -156,6 +172,10 @@ def targets_alone(rest: Words, is_name: Callable[[ast.Name], bool]) -> Words:
     groups: list[Words] = [()]
     for word in rest:
         if word.text in PREPOSITIONS and not is_name(word):
+            measures = [w.text in _MEASURES and not is_name(w) for w in groups[-1][-1:]]
+            if word.text == "of" and any(measures):  # `a bunch of roses`
+                groups[-1] = groups[-1][:-1]
+                continue
             groups.append(())
         groups[-1] = (*groups[-1], word)
     kept: Words = ()
@@ -189,6 +209,21 @@ def _target_of(begins: Words, said: Words, later: bool, is_name: Callable[[ast.N
 
 def _says_how(word: ast.Name) -> bool:
     return word.text in ADVERBS or word.text.endswith("ly")
+
+
+def of_several(name: ast.Name) -> ast.Name | None:
+    """The word for one of several: ``candle`` of ``candles``; None for what is no plural."""
+    word = name.text
+    if len(name.parts) > 1 or not word.endswith("s") or word.endswith("ss"):
+        return None
+    one = (
+        f"{word[:-3]}y"
+        if word.endswith("ies")
+        else word[:-2]
+        if word.endswith(("ches", "shes", "xes"))
+        else word[:-1]
+    )
+    return ast.Name((one,), name.span)
 
 
 def without_walls(rest: Words, is_name: Callable[[ast.Name], bool]) -> Words:

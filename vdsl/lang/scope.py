@@ -16,7 +16,7 @@ from .definitions.types import DefinitionBase, SetNode
 from .diagnostics import Report, listing, nearest
 from .ir import Placement, Target
 from .source import Span
-from .words import counts_under
+from .words import counts_under, fold
 
 ROOMS = ("set", "room", "area")
 
@@ -97,13 +97,18 @@ class Scope:
         found = self.look_up((word,))
         return Target(found[0].kind, found[0].path, word, span, implied=True) if found else None
 
+    def has(self, parts: tuple[str, ...]) -> bool:
+        """Whether parts of a name mean something here, or are a word for what something here is."""
+        return bool(self.look_up(parts) or (len(parts) == 1 and self._alike(parts[0])))
+
     def _alike(self, word: str) -> list[Found]:
         """What in the scene is no more than counted under a word (``desk_1``, ``desk_2``), or else what is of
-        that kind, whatever it is called."""
+        that kind, or of one of which that is another word, whatever it is called."""
         top = node_at(self.root, self.room) or self.root
         nodes = [Found(path, node, False) for path, node in walk(top, self.room) if path != self.room]
         counted = [f for f in nodes if counts_under(word, f.path[-1])]
-        return counted or [f for f in nodes if f.node.prop == word]
+        kinds = (word, self.catalog.synonyms("prop").get(fold(word), word))
+        return counted or [f for f in nodes if f.node.prop in kinds]
 
     def look_up(self, parts: tuple[str, ...]) -> list[Found]:
         """Everything the parts of a name may mean; one where it is plain, none where it is unknown."""

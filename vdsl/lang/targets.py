@@ -10,6 +10,7 @@ from collections.abc import Callable
 from itertools import pairwise
 
 from . import ast, phrases, words
+from .bringing import carried_called
 from .catalog import CatalogLike
 from .definitions.types import DefinitionBase
 from .diagnostics import Report, listing, nearest
@@ -116,7 +117,7 @@ class TargetReader:
         if len(group) > 1 and self.scope is not None:
             for joint in ("_", "-"):
                 parts = (joint.join(name.text for name in group),)
-                if self.scope.look_up(parts):
+                if self.scope.has(parts):
                     return self._resolve(ast.Name(parts, group[0].span.to(group[-1].span)))
             inside = ast.Name(tuple(name.text for name in group), group[0].span.to(group[-1].span))
             if self.scope.look_up(inside.parts):  # `kitchen door`
@@ -136,36 +137,36 @@ class TargetReader:
         return self._resolve(group[0])
 
     def _without_adjectives(self, group: list[ast.Name], held: bool) -> list[ast.Name]:
-        """The words from the first on with which they are a name, after words for what that is like."""
-
-        props = {*self.catalog.names("prop"), *self.catalog.synonyms("prop")}
-
-        def known(words: list[ast.Name]) -> bool:
-            joined = "_".join(name.text for name in words)
-            return (
-                any(
-                    self.is_name(ast.Name((name,), words[0].span))
-                    for name in (joined, joined.replace("_", "-"))
-                )
-                or (len(words) == 1 and not self._is_nowhere(words))
-                or (self.scope is not None and bool(self.scope.look_up(tuple(name.text for name in words))))
-                or (held and (joined.replace("_", "-") in props or joined in props))
-            )
-
-        if len(group) < 2 or self.scope is None or any(name.text == "and" for name in group) or known(group):
+        """The words from the first on with which they are a name, after words for what that is like; of
+        several (``candles``), one."""
+        if self.scope is None or any(name.text == "and" for name in group) or self._known(group, held):
             return group
-        first = next((k for k in range(1, len(group)) if known(group[k:])), 0)
-        if any(known([word]) for word in group[:first]):  # two names: `anna a note`
-            return group
-        if first:
-            said, rest = (" ".join(name.text for name in part) for part in (group[:first], group[first:]))
-            self.report.warn(
-                "VDS082",
-                group[0].span.to(group[first - 1].span),
-                label=f"`{said}` is left out",
-                help=f"`{rest}` looks as it is defined",
-            )
-        return group[first:]
+        one = phrases.of_several(group[-1])
+        for last in (group[-1], *((one,) if one is not None else ())):
+            said = [*group[:-1], last]
+            first = next((k for k in range(len(said)) if self._known(said[k:], held)), len(said))
+            if first == len(said):
+                continue
+            if any(self._known([word], held) for word in said[:first]):  # two names: `anna a note`
+                return group
+            if first:
+                names = [" ".join(name.text for name in part) for part in (said[:first], said[first:])]
+                span = group[0].span.to(group[first - 1].span)
+                left, kept = f"`{names[0]}` is left out", f"`{names[1]}` looks as it is defined"
+                self.report.warn("VDS082", span, label=left, help=kept)
+            return said[first:]
+        return group
+
+    def _known(self, said: list[ast.Name], held: bool) -> bool:
+        """Whether words are somebody's name, or something's that is there, or is had if it is to be held."""
+        if len(said) == 1 and not self._is_nowhere(said):
+            return True
+        parts = tuple(name.text for name in said)
+        if self.scope is not None and any(
+            self.scope.has(each) for each in (parts, ("_".join(parts),), ("-".join(parts),))
+        ):
+            return True
+        return held and bool(carried_called("_".join(parts), self.catalog))
 
     def _two_lines(self) -> str:
         """What to write for a line that says two things."""

@@ -352,3 +352,53 @@ def test_what_is_numbered_is_found_by_its_word_and_a_kind_by_its_own() -> None:
     assert board.lines[0].beats[0].target is not None
     assert board.lines[0].beats[0].target.path[-1] == "desk_1"
     assert [(d.code, d.severity) for d in report.diagnostics] == [("VDS061", "warning")]
+
+
+def test_several_do_it_to_somebody_else_and_whom_is_the_same_for_all() -> None:
+    assert (
+        acts(THREE + "(anna and ben hug carl)\n(they hug carl)")
+        == [
+            ("anna", "hug", "carl"),
+            ("ben", "hug", "carl"),
+        ]
+        * 2
+    )
+    assert acts(THREE + "(ben waves)\n(they all look at him)")[1:] == [
+        ("anna", "look", "ben"),
+        ("carl", "look", "ben"),
+    ]
+    assert acts(THREE + "(anna and ben look at him)") == [("anna", "look", "carl"), ("ben", "look", "carl")]
+    assert acts("(they look at ben)") == [("anna", "look", "ben")]
+    for line in ("(all)", "(everybody)", "(they all)"):
+        board, report = read(line)
+        assert board is None, line
+        assert report.errors, line
+
+
+def test_who_is_meant_does_not_hang_on_later_lines() -> None:
+    board, report = read("(they laugh)\n(he waves)\n" + THREE.split("\n")[0] + "\n(carl walks in)")
+    assert board is not None, report.errors
+    assert [b.character for line in board.lines for b in line.beats] == ["anna", "ben", "ben", "carl"]
+
+
+def test_what_is_no_adverb_and_no_adjective_is_told() -> None:
+    for line, code in (
+        ("(anna waves at molly)", "VDS060"),
+        ("(anna walks to emily)", "VDS060"),
+        ("(anna shows bne the cup)", "VDS073"),
+        ("(anna puts her hand on his shoulder)", "VDS072"),
+        ("(anna opens her eyes)", "VDS072"),
+        ("(ben pats his pockets)", "VDS072"),
+    ):
+        board, report = read("(ben waves)\n" + line)
+        assert board is None, line
+        assert code in [d.code for d in report.errors], line
+    for line, expected in (
+        ("(anna puts the hat on her head)", ("anna", "put-on", "hat")),
+        ("(anna dances with joy)", ("anna", "dance", "")),
+        ("(anna stretches out her arms)", ("anna", "stretch", "")),
+        ("(anna carries the cup behind her)", ("anna", "carry", "cup")),
+        ("(anna reads the letter one last time)", ("anna", "read", "letter")),
+    ):
+        assert acts(line) == [expected], line
+    assert acts("(anna and ben join hands)") == [("anna", "hold-hands", "ben")]

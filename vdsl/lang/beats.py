@@ -56,8 +56,7 @@ class BeatReader:
         node, manner = self._manner(node)
         possessed = next((w.text for w in node.words if w.text in ("her", "his", "their")), "")
         spoken_of = mentions.meant(possessed)
-        known = phrases.Known(self.characters, mentions.meant, self._it, self._is_action)
-        node = replace(node, words=phrases.plain(node.words, known))
+        node = replace(node, words=phrases.plain(node.words, self._known()))
         mentions.read(character, [word.text for word in node.words if word.text in self.characters])
         if len(node.words) < 2:
             self.report.error(
@@ -71,6 +70,7 @@ class BeatReader:
         if action is None:
             return None
         definition = self.catalog.get("action", action)
+        of_body = phrases.first_is_of_a_body(node.words[1 + used :], self.targets.is_name)
         rest = phrases.targets_alone(node.words[1 + used :], self.targets.is_name)
         if getattr(definition, "against", 0.0):
             rest = phrases.without_walls(rest, self.targets.is_name)
@@ -78,7 +78,15 @@ class BeatReader:
         link = next((w.text for w in rest[1:] if w.text in words.PREPOSITIONS), "")
         if definition is None or named is None or character is None:
             return None
-        if not named and self.scope is not None:
+        if of_body and mentions.may_be_own(possessed):
+            spoken_of = ""  # `strokes his chin`
+        if of_body and not rest and getattr(definition, "needs", "none") != "none":
+            body = " ".join(word.text for word in node.words[1 + used :])
+            self.report.error(
+                "VDS072", node.span, label=f"`{action}` is done with a thing, not with `{body}`"
+            )
+            return None
+        if not named and self.scope is not None and not of_body:
             unsaid = (self.scope.first(word, node.span) for word in getattr(definition, "otherwise", ()))
             named = [target for target in unsaid if target is not None][:1]
         whom = spoken_of if possessed else mentions.other()
@@ -99,6 +107,18 @@ class BeatReader:
                 self.report.error("VDS075", target.span, label=f"{character} cannot do this to themselves")
                 return None
         return Beat(character, action, first, second, node.span, manner)
+
+    def each_of(self, node: ast.BeatNode) -> tuple[tuple[ast.BeatNode, ...], bool]:
+        """The beat for each of those it is of, as :func:`vdsl.lang.phrases.each_of` says."""
+        self.mentions.who, self.mentions.acting = None, ()
+        found, together = phrases.each_of(node, self.mentions, self._known())
+        self.mentions.acting = ()
+        self.mentions.group = tuple(each.words[0].text for each in found) if len(found) > 1 else ()
+        return found, together
+
+    def _known(self) -> phrases.Known:
+        own = self.mentions.may_be_own
+        return phrases.Known(self.characters, self.mentions.meant, own, self._it, self._is_action)
 
     def takes_somebody(self, action: str) -> bool:
         """Whether an action is nothing without somebody it is done to, and one will do: ``hug``."""
@@ -142,6 +162,8 @@ class BeatReader:
             action = self._called(rest[:size])
             if action is None or (found is not None and not self._takes(action, rest[size:])):
                 continue
+            if size > 1 and rest[size - 1].text in words.PREPOSITIONS and phrases.only_how(rest[size:]):
+                continue  # `dances with joy` is to dance, not to dance with somebody
             # `look at phone`, where there is a phone, and not `look-at-phone`
             names_something = size > 1 and self.targets.is_name(rest[size - 1])
             by_it = names_something and rest[size - 2].text in _BY_WHICH

@@ -10,7 +10,7 @@ from __future__ import annotations
 from dataclasses import replace
 from pathlib import PurePath
 
-from . import ast, phrases
+from . import ast
 from .beats import BeatReader
 from .bringing import bring, bring_named
 from .catalog import CatalogLike
@@ -307,7 +307,8 @@ class _Checker:
             stage.reader.targets.bring = lambda word, span, who: bring_named(
                 word, span, who, stage, self.catalog
             )
-        stage.reader.mentions.about = tuple(name for name in names if name in stage.members) or names
+        here = tuple(name for name in names if name in stage.placements)  # so far
+        stage.reader.mentions.about = here or stage.members or names
         done = tuple(beat for each in node.beats for beat in self._beats(stage.reader, each, stage))
         self._together(done)
         for beat in done:
@@ -335,13 +336,14 @@ class _Checker:
     def _beats(self, reader: BeatReader, node: ast.BeatNode, stage: SceneBeingRead) -> tuple[Beat, ...]:
         """What a beat says: one, or where it is of several people, one each, if it is nothing two do to each
         other."""
-        nodes, together = phrases.each_of(node, reader.mentions, tuple(self.characters))
+        nodes, together = reader.each_of(node)
         who = [each.words[0].text for each in nodes]
         found: list[Beat | None] = []
         for k, each in enumerate(nodes):
             reader.mentions.partner = who[1 - k] if together and len(who) == 2 else ""
             found.append(self._beat(reader, each, stage))
-            if found[-1] is None or (len(nodes) == 2 and reader.takes_somebody(found[-1].action)):
+            done = found[-1]
+            if done is None or (len(nodes) == 2 and reader.takes_somebody(done.action) and _is_to(done, who)):
                 break
         reader.mentions.partner = ""
         for other in nodes[len(found) :] if found[-1] is not None else ():  # they take part in what is done
@@ -385,3 +387,8 @@ class _Checker:
         else:
             return None
         return Target("character", (who,), who, span)
+
+
+def _is_to(beat: Beat, who: list[str]) -> bool:
+    """Whether a beat is done to one of these people."""
+    return beat.target is not None and beat.target.kind == "character" and beat.target.path[0] in who

@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 
 from . import ast
 from .pronouns import ALL, BOTH, ONE, Mentions
-from .words import ARTICLES, PREPOSITIONS, plain_forms
+from .words import ARTICLES, PREPOSITIONS, WHERE, plain_forms
 
 #: Before a verb, by itself or with ``to``, they say that it begins or goes on.
 AUXILIARIES = ("is", "are", "start", "begin", "try", "continue", "keep", "proceed", "pretend")
@@ -79,6 +79,9 @@ _HOW = {
     "pain", "panic", "prayer", "purpose", "rage", "relief", "scream", "second", "shrug", "sigh", "silence",
     "smile", "strength", "surprise", "tear", "tears", "time", "while",
 }  # fmt: skip
+_NO_ADVERBS = ("assembly", "beverly", "family", "supply")
+#: They choose among several: they are not left out in silence.
+_COUNTING = ("first", "second", "last", "one", "two", "other")
 #: How much there is of something.
 _MEASURES = (
     "bit",
@@ -104,6 +107,8 @@ _BODY = {
     "fist", "fists", "wrist", "leg", "legs", "knee", "knees", "foot", "feet",
 }  # fmt: skip
 
+_WORN_ON = ("head", "face", "nose", "finger", "wrist", "neck", "feet", "hands")
+
 Words = tuple[ast.Name, ...]
 
 
@@ -111,12 +116,14 @@ Words = tuple[ast.Name, ...]
 class Known:
     """What a line's words may stand for.
 
-    named: people of the storyboard; them: who, besides the one who acts, a pronoun means, or ""; it: the
-    parts of the name of what was spoken of last, or (); is_action: whether all of some words name an action
+    named: people of the storyboard; them: who, besides the one who acts, a pronoun means, or ""; own: whether
+    it may mean who acts; it: the parts of the name of what was spoken of last, or (); is_action: whether all
+    of some words name an action
     """
 
     named: Sequence[str]
     them: Callable[..., str]
+    own: Callable[[str], bool]
     it: tuple[str, ...]
     is_action: Callable[[Words], bool]
 
@@ -133,28 +140,31 @@ def plain(said: Words, known: Known) -> Words:
     return character + _verb_first(rest, known)
 
 
-def each_of(
-    node: ast.BeatNode, mentions: Mentions, named: Sequence[str]
-) -> tuple[tuple[ast.BeatNode, ...], bool]:
+def each_of(node: ast.BeatNode, mentions: Mentions, known: Known) -> tuple[tuple[ast.BeatNode, ...], bool]:
     """The beat with a name for who acts, or where it is of several, as of ``anna and ben`` or ``they``, the
-    same of each of them; and whether these do it with each other rather than with whoever else is about."""
+    same of each of them; and whether these do it with each other rather than with whoever else is about.
+
+    Whom several do something to is found once for all of them.
+    """
     first, count = node.words[0], 1
-    while count + 1 < len(node.words) and node.words[count].text == "and" and "and" not in named:
+    while count + 1 < len(node.words) and node.words[count].text == "and" and "and" not in known.named:
         count += 2
     if count > 1:
-        return _done_by(node, node.words[:count:2], node.words[count:]), True
-    if first.text in named:
+        mentions.acting = tuple(word.text for word in node.words[:count:2])
+        return _done_by(node, node.words[:count:2], _with_names(node.words[count:], known, False)), True
+    if first.text in known.named:
         return (node,), False
     rest = node.words[1:]
-    if " ".join(word.text for word in node.words[:2]) in ALL:
+    if first.text == "they" and rest[:1] != () and rest[0].text == "all":
         first, rest = ast.Name(("all",), first.span.to(rest[0].span)), rest[1:]
     who: tuple[str, ...] = ()
-    if first.text in ALL:  # `they all look at anna`: all others
-        who = tuple(name for name in mentions.about if all(word.text != name for word in rest))
-    elif first.text in BOTH:
-        who = mentions.two()
+    if first.text in ALL or first.text in BOTH:
+        mentions.acting = mentions.two() if first.text in BOTH else ()
+        rest = _with_names(rest, known, False)
+        several = mentions.about if first.text in ALL else mentions.two()
+        who = tuple(name for name in several if all(word.text != name for word in rest))  # all others
     elif first.text in ONE:
-        who = (mentions.acting(first.text),)
+        who = (mentions.who_acts(first.text),)
     names = tuple(ast.Name((name,), first.span) for name in who if name)
     if not names:
         return (node,), False
@@ -197,33 +207,53 @@ def _target_of(begins: Words, said: Words, later: bool, is_name: Callable[[ast.N
     if begins and later and begins[0].text == "of":  # `a glass of water` is a glass
         return (*begins, *names) if (names := tuple(w for w in said if is_name(w))) else ()
     words = said
-    while words and not is_name(words[-1]) and _says_how(words[-1]) and words[-1].text not in _BODY:
+    while len(words) > (1 if begins else 0) and _says_how(words[-1]) and not is_name(words[-1]):
+        if words[-1].text in _BODY:
+            break
         words = words[:-1]
-    words = tuple(w for k, w in enumerate(words) if is_name(w) or not _says_how(w) or k + 1 == len(words))
     named = any(is_name(word) for word in words)
-    if not named and words and words[-1].text in (*_BODY, *_HOW, *_EVERYWHERE):
-        return ()  # `greasy hands`, `with a heavy sigh`
+    if not named and words and words[-1].text in _HOW and not begins:  # `the letter one last time`
+        while words and (words[-1].text in _HOW or _says_how(words[-1])):
+            words = words[:-1]
+        return words
+    if not named and words and (words[-1].text in (*_BODY, *_HOW, *_EVERYWHERE) or words[-1].text in ADVERBS):
+        return ()  # `greasy hands`, `with a heavy sigh`, `to herself`
+    words = tuple(w for w in words if is_name(w) or w.text in _COUNTING or not _says_how(w))
     words = tuple(word for word in words if is_name(word) or word.text not in (*_BODY, *_HOW, *_EVERYWHERE))
     return (*begins, *words) if words else ()
 
 
 def _says_how(word: ast.Name) -> bool:
-    return word.text in ADVERBS or word.text.endswith("ly")
+    return word.text in ADVERBS or _is_adverb(word.text)
 
 
-def of_several(name: ast.Name) -> ast.Name | None:
-    """The word for one of several: ``candle`` of ``candles``; None for what is no plural."""
-    word = name.text
-    if len(name.parts) > 1 or not word.endswith("s") or word.endswith("ss"):
-        return None
-    one = (
-        f"{word[:-3]}y"
-        if word.endswith("ies")
-        else word[:-2]
-        if word.endswith(("ches", "shes", "xes"))
-        else word[:-1]
-    )
-    return ast.Name((one,), name.span)
+def _is_adverb(word: str) -> bool:
+    """Whether a word looks like one: ``softly``, and not ``molly``, ``family`` or ``butterfly``."""
+    return word.endswith("ly") and len(word) > 5 and not word.endswith("fly") and word not in _NO_ADVERBS
+
+
+def of_several(name: ast.Name) -> tuple[ast.Name, ...]:
+    """What one of several may be called: ``candle`` of ``candles``, ``glass`` of ``glasses``."""
+    word, forms = name.text, []
+    if len(name.parts) == 1 and word.endswith("s") and not word.endswith("ss"):
+        forms = [word[:-1], *([f"{word[:-3]}y"] if word.endswith("ies") else [])]
+        forms += [word[:-2]] if word.endswith(("ches", "shes", "xes", "sses")) else []
+    return tuple(ast.Name((form,), name.span) for form in forms if form)
+
+
+def first_is_of_a_body(rest: Words, is_name: Callable[[ast.Name], bool]) -> bool:
+    """Whether what is done is done to a part of a body, and to nothing else: ``her eyes``."""
+    first: Words = ()
+    for word in rest:
+        if word.text in PREPOSITIONS:
+            break
+        first = (*first, word)
+    return first != () and first[-1].text in _BODY and not any(is_name(word) for word in first)
+
+
+def only_how(rest: Words) -> bool:
+    """Whether words say how something is done and nothing else."""
+    return rest != () and all(word.text in _HOW or _says_how(word) for word in rest)
 
 
 def without_walls(rest: Words, is_name: Callable[[ast.Name], bool]) -> Words:
@@ -237,21 +267,23 @@ def without_walls(rest: Words, is_name: Callable[[ast.Name], bool]) -> Words:
     return kept
 
 
-def _with_names(said: Words, known: Known) -> Words:
-    """With names for ``him``, ``them`` and ``it``, and for ``her`` where it is not hers that something is."""
+def _with_names(said: Words, known: Known, each_other: bool = True) -> Words:
+    """With names for ``him``, ``them`` and ``it``, and for ``her`` where it is not hers that something is;
+    and for ``each other`` unless that waits until it is known who."""
     out: list[ast.Name] = []
     for n, word in enumerate(said):
-        if known.them() and tuple(w.text for w in said[n : n + 2]) in _EACH_OTHER:
+        if each_other and known.them() and tuple(w.text for w in said[n : n + 2]) in _EACH_OTHER:
             out.append(ast.Name((known.them(),), word.span.to(said[n + 1].span)))
             continue
-        if n and tuple(w.text for w in said[n - 1 : n + 1]) in _EACH_OTHER:
+        if each_other and n and tuple(w.text for w in said[n - 1 : n + 1]) in _EACH_OTHER:
             continue
         ends = n + 1 == len(said) or said[n + 1].text in (*PREPOSITIONS, *PARTICLES, *ARTICLES, *ADVERBS)
         ends = ends and tuple(w.text for w in said[n + 1 : n + 3]) not in _HER_BACK
         meant: tuple[str, ...] = known.it if word.text == "it" else ()
         if word.text in _OBJECTS and (word.text != "her" or ends) and known.them(word.text):
             meant = (known.them(word.text),)
-        if word.text in _OBJECTS and ends and not meant and out and out[-1].text in PREPOSITIONS:
+        behind = ends and not meant and out != [] and out[-1].text in WHERE and known.own(word.text)
+        if word.text in _OBJECTS and behind and (n + 1 == len(said) or said[n + 1].text not in _BODY):
             out.pop()  # `behind her`, where she is who acts
             continue
         out.append(ast.Name(meant, word.span) if meant and word.text not in known.named else word)
@@ -264,8 +296,13 @@ def _verb_first(rest: Words, known: Known) -> Words:
     if len(rest) < 3 or known.is_action(rest[:2]):
         return rest
     verb, first, *others, last = rest
+    worn = last.text in _WORN_ON and others[-1:] != [] and others[-1].text == "on" and first.text not in _BODY
+    if worn and known.is_action((verb, others[-1])):  # `puts the hat on her head`
+        return (verb, others[-1], first, *others[:-1])
     if last.text in PARTICLES and known.is_action((verb, last)):
         return (verb, last, first, *others)
+    if last.text in _BODY and known.is_action((verb, last)) and first.text not in known.named:
+        return (verb, last)  # `wash greasy hands`
     by = not others or (len(others) == 1 and others[0].text in PREPOSITIONS)
     if first.text in known.named and by and known.is_action((verb, last)):
         return (verb, last, first)

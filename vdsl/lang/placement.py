@@ -133,4 +133,6 @@ def appear(word: ast.Name, scene: SceneBeingRead, report: Report) -> None:
             help=f"a line like `{word.text} at NAME` above says where; else it is the first free spot",
         )
     free = Target("free", (), "", word.span)
+    if word.text not in scene.members:  # of whom a pronoun spoke
+        scene.members = (*scene.members, word.text)
     scene.placements[word.text] = Placement(word.text, free, None, "standing", word.span)

@@ -26,13 +26,16 @@ class Mentions:
     """People as they are spoken of in a scene.
 
     about: who is in the scene; bodies: feminine or masculine, where that is known; partner: with whom who
-    acts does it, where two are named; who: who acts in the line that is read
+    acts does it, where two are named; who: who acts in the line that is read; acting: all who do
+    group: who acted together in the last line, if they were several
     """
 
     about: tuple[str, ...] = ()
     bodies: Mapping[str, str] = field(default_factory=dict)
     partner: str = ""
     who: str | None = None
+    acting: tuple[str, ...] = ()
+    group: tuple[str, ...] = ()
     _acted: tuple[str, ...] = ()  # who acted last first
     _spoken_of: tuple[str, ...] = ()  # who was spoken of last first, who acts after all others of a line
 
@@ -43,7 +46,7 @@ class Mentions:
         if acting:
             self._acted = tuple(dict.fromkeys((acting, *self._acted)))
 
-    def acting(self, pronoun: str) -> str:
+    def who_acts(self, pronoun: str) -> str:
         """Who acts by ``he`` or ``she``: who acted last of those it may mean, else who was spoken of last,
         else the only one it may mean; "" for nobody."""
         may = [name for name in self.about if self._may(pronoun, name)]
@@ -51,9 +54,12 @@ class Mentions:
         return last or (may[0] if len(may) == 1 else "")
 
     def two(self) -> tuple[str, ...]:
-        """Who ``they`` are: the two who are about, or of more those who acted or were spoken of last."""
+        """Who ``they`` are: the two who are about, or of more those who acted together or were spoken of
+        last."""
         if len(self.about) == 2:
             return self.about
+        if len(self.group) == 2:
+            return self.group
         last = self._spoken_of[:2]
         return tuple(name for name in self.about if name in last) if len(last) == 2 else ()
 
@@ -62,7 +68,7 @@ class Mentions:
         was spoken of last; "" for nobody. Without a word the one with whom something is done."""
         if self.partner and not pronoun:
             return self.partner
-        others = [name for name in self.about if name != self.who]
+        others = [name for name in self.about if name != self.who and name not in self.acting]
         may = [name for name in others if self._may(pronoun, name)]
         last = next((name for name in self._spoken_of if name in may), "")
         return may[0] if len(may) == 1 else last
@@ -73,6 +79,10 @@ class Mentions:
             return self.partner
         others = [name for name in self.about if name != self.who]
         return others[0] if len(others) == 1 else ""
+
+    def may_be_own(self, pronoun: str) -> bool:
+        """Whether a word may mean who acts."""
+        return pronoun in _BODIES and self.who is not None and self._may(pronoun, self.who)
 
     def _may(self, pronoun: str, name: str) -> bool:
         body = _BODIES.get(pronoun, "")

@@ -141,13 +141,13 @@ class TargetReader:
         several (``candles``), one."""
         if self.scope is None or any(name.text == "and" for name in group) or self._known(group, held):
             return group
-        one = phrases.of_several(group[-1])
-        for last in (group[-1], *((one,) if one is not None else ())):
+        for last in (group[-1], *phrases.of_several(group[-1])):
             said = [*group[:-1], last]
             first = next((k for k in range(len(said)) if self._known(said[k:], held)), len(said))
             if first == len(said):
                 continue
-            if any(self._known([word], held) for word in said[:first]):  # two names: `anna a note`
+            two = any(self._known([word], held) for word in said[:first])  # names: `anna a note`
+            if two or any(nearest(word.text, self.characters) for word in said[:first]):
                 return group
             if first:
                 names = [" ".join(name.text for name in part) for part in (said[:first], said[first:])]

@@ -145,6 +145,30 @@ def test_what_shows_no_type_is_another_take() -> None:
         assert max(off) > 0.05
 
 
+def test_what_turns_round_half_way_does_not_judder() -> None:
+    """Else it is told apart by that, and not by showing no type."""
+    track = _track()
+    along = np.linspace(0, 1, 40)
+    even = replace(
+        track,
+        position=track.position[:1] + along[:, None] * (1.0, 0.5, 0.0),
+        rotation=np.tile(track.rotation[:1], (40, 1))
+        + along[:, None] * (0.0, 0.0, 0.4)
+        + (0.0, 0.0, np.pi - 0.2),
+    )
+    turning = 0
+    for seed in range(40):
+        spoilt = mistyped(even, np.random.default_rng(seed))
+        assert np.abs(np.diff(spoilt.rotation, axis=0)).max() < 0.5  # and not once round
+        step = np.linalg.norm(np.diff(spoilt.position, axis=0), axis=1)
+        if np.ptp(spoilt.position, axis=0).max() < 0.99 * np.ptp(even.position, axis=0).max():
+            continue
+        changes = np.abs(np.diff(step)) > 0.3 * step.max()
+        assert changes.sum() <= 2  # where it turns
+        turning += bool(changes.any() or np.allclose(spoilt.position[0], spoilt.position[-1]))
+    assert turning >= 5
+
+
 def test_what_two_did_together_may_have_begun_before_a_shot() -> None:
     text = """storyboard "dance"
 character anna = soldier

@@ -183,7 +183,8 @@ def paces_of(track: CameraTrack, at: NDArray[np.integer], seconds: float) -> NDA
     frames = len(track.position)
     fps = frames / seconds
     step = np.linalg.norm(np.diff(track.position, axis=0), axis=1) * fps
-    turn = np.diff(track.rotation, axis=0) * fps
+    turn = (np.diff(track.rotation, axis=0) + np.pi) % (2 * np.pi) - np.pi
+    turn *= fps
     turning = np.hypot(turn[:, 1], turn[:, 2] * np.cos(track.rotation[:-1, 1]))
     jerk = np.linalg.norm(np.diff(track.position, 3, axis=0), axis=1) * fps**3
     halves = (at[1:] + at[:-1]) // 2

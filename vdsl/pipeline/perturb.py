@@ -57,18 +57,29 @@ def mistyped(track: CameraTrack, rng: np.random.Generator) -> CameraTrack:
     turn = rng.uniform(0.4, 0.6)
     there = np.minimum(t / turn, (1 - t) / (1 - turn))
     if kind == 1:
-        at = np.round(there * (frames - 1)).astype(int)
-        moved = CameraTrack(
-            track.position[at], track.rotation[at], track.focal[at], track.look_at, track.sensor
-        )
+        at = there * (frames - 1)
+        rotation = np.unwrap(track.rotation, axis=0)
+        position, rotation, focal = (_between(v, at) for v in (track.position, rotation, track.focal))
+        moved = CameraTrack(position, rotation, focal, track.look_at, track.sensor)
         still = float(np.linalg.norm(np.ptp(track.position, axis=0))) + float(np.ptp(track.rotation[:, 2]))
         if still > 0.1:
             return moved
     aim = track.look_at - track.position
     across = np.cross(aim, (0.0, 0.0, 1.0))
     away = there[:, None] * across * rng.choice((-1, 1)) * rng.uniform(0.3, 0.6)
-    rotation = track.rotation + look_at_rotation(track.position, track.look_at + away)
-    return replace(track, rotation=rotation - look_at_rotation(track.position, track.look_at))
+    turned = look_at_rotation(track.position, track.look_at + away)
+    turned -= look_at_rotation(track.position, track.look_at)
+    return replace(track, rotation=track.rotation + (turned + np.pi) % (2 * np.pi) - np.pi)
+
+
+def _between(values: NDArray[np.float64], at: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Values [T, …] at moments between frames, in their straight way from one to the next: whole frames would
+    judder."""
+    first = np.minimum(at.astype(int), len(values) - 1)
+    share = (at - first).reshape(-1, *[1] * (values.ndim - 1))
+    return np.asarray(
+        values[first] + share * (values[np.minimum(first + 1, len(values) - 1)] - values[first])
+    )
 
 
 def _unit(rng: np.random.Generator) -> NDArray[np.float64]:

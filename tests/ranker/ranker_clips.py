@@ -24,6 +24,7 @@ TINY = TrainConfig(
     augment=False,
     backbone="resnet18",
     size=SIZE,
+    threads=1,  # several processes test at a time
 )
 
 

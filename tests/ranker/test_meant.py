@@ -74,7 +74,7 @@ def test_which_frames_are_meant_is_known_where_it_is_said(tmp_path: Path) -> Non
 
 def test_which_frames_are_meant_is_learnt_by_how_the_camera_moves(tmp_path: Path) -> None:
     write_panned(tmp_path / "data", 80)
-    phases = (Phase(50, 0, batch=16), replace(TINY.phases[0], epochs=1))
+    phases = (Phase(80, 0, batch=16), replace(TINY.phases[0], epochs=1))
     config = replace(TINY, phases=phases, unguided=0.0, guides=32, motion=0, hint_weight=1.0, good_weight=0.5)
     train(tmp_path / "data", tmp_path / "out", config)
     model, card = load_model(tmp_path / "out" / "weights")

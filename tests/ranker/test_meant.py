@@ -15,7 +15,7 @@ from ranker.config import Phase
 from ranker.data import Dataset, ShardWriter
 from ranker.guided import Guided
 from ranker.guides import CHANNELS, FLOW, MARKS, SIDE, SUBJECT_MARKS, Guides, joined, pairs
-from ranker.model import ShotRanker, frame_times
+from ranker.model import Output, ShotRanker, frame_times
 from ranker.starting import take_over
 from ranker.train import train
 from ranker.weights import load_model, save_weights
@@ -81,18 +81,22 @@ def test_which_frames_are_meant_is_learnt_by_how_the_camera_moves(tmp_path: Path
     assert card.model.meant
     rng, kinds = np.random.default_rng(5), [(e, g) for e in (True, False) for g in (True, False)] * 3
     guides = joined([guides_of(rng, ends, good) for ends, good in kinds])
-    times = frame_times(model.config)
-    nothing = torch.zeros(len(kinds), FRAMES, model.described)
-    with torch.inference_mode():
-        out = model.judge(
-            nothing, times.expand(len(kinds), -1), None, Guided.of(guides, times), pictures=False
-        )
+    out = judged(model, guides)
     late = np.arange(FRAMES) >= FRAMES // 2
     told = out.meant.numpy() > 0
     assert (told == [late == ends for ends, _ in kinds]).mean() > 0.95
     good = np.array([g for _, g in kinds])
     margin = model.margin(out).numpy()
     assert margin[good].min() > margin[~good].max()
+
+
+def judged(model: ShotRanker, guides: Guides) -> Output:
+    """What a network says of shots by their guides alone."""
+    times, count = frame_times(model.config), len(guides)
+    nothing = torch.zeros(count, FRAMES, model.described)
+    with torch.inference_mode():
+        told = Guided.of(guides, times)
+        return model.judge(nothing, times.expand(count, -1), None, told, pictures=False)
 
 
 def test_a_network_that_tells_them_starts_from_weights_that_do_not(tmp_path: Path) -> None:
@@ -111,13 +115,7 @@ def test_a_network_that_tells_them_starts_from_weights_that_do_not(tmp_path: Pat
         assert taken[name][:, wide:].isnan().all()
     rng = np.random.default_rng(3)
     guides = joined([guides_of(rng, True, True), guides_of(rng, False, False)])
-    times = frame_times(shape)
-    nothing = torch.zeros(2, FRAMES, ours.described)
-    with torch.inference_mode():
-        before, now = (
-            m.judge(nothing, times.expand(2, -1), None, Guided.of(guides, times), pictures=False)
-            for m in (other, ours)
-        )
+    before, now = (judged(m, guides) for m in (other, ours))
     torch.testing.assert_close(now.logit, before.logit, atol=1e-4, rtol=1e-4)
     torch.testing.assert_close(now.told, before.told, atol=1e-4, rtol=1e-4)
     assert before.meant.shape == (2, 0)
@@ -137,12 +135,6 @@ def test_a_network_that_looks_at_people_starts_from_weights_that_do_not(tmp_path
     rng = np.random.default_rng(3)
     guides = joined([guides_of(rng, True, True), guides_of(rng, False, False)])
     guides.marks[..., len(SUBJECT_MARKS) :] = rng.normal(0, 1, (2, FRAMES, len(MARKS) - len(SUBJECT_MARKS)))
-    times = frame_times(shape)
-    nothing = torch.zeros(2, FRAMES, ours.described)
-    with torch.inference_mode():
-        before, now = (
-            m.judge(nothing, times.expand(2, -1), None, Guided.of(guides, times), pictures=False)
-            for m in (other, ours)
-        )
+    before, now = (judged(m, guides) for m in (other, ours))
     for name in ("logit", "told", "meant", "mapped"):
         torch.testing.assert_close(getattr(now, name), getattr(before, name), atol=1e-4, rtol=1e-4)

@@ -122,7 +122,7 @@ class EmptySets:
         seen: the moment of each view, what :meth:`drawn_for` returned, and where glass may move; whole:
         complete pictures, unsmoothed
         """
-        moment, empty, box = seen
+        (moment, empty, box), shadows = seen, moments.shadows
         source = self._passes.layer("empty_", int(empty.max()) + 1, size)
         run, views, a = self._passes.run, len(empty), loaded.arrays
         block = self._buffer("block", (views * -(-size[1] // run) * -(-size[0] // run),), np.int32)
@@ -137,9 +137,8 @@ class EmptySets:
             self._visibility.touched,
             self._reach,
             self._wide,
-            moments.frame,
-            moments.size,
-            moments.changed,
+            *(shadows.frame, shadows.size, shadows.coarse),
+            *(shadows.home, shadows.home_frame, shadows.home_size, shadows.home_changed),
             a["floor"],
             *cells,
             moments.ground,

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from .adjacency import beside
 from .bake import light_basis, occlusion_volume
 from .device import Backend
+from .home import Home, entries_of
 from .lamps import lamp_volume
 from .looks import glass_colors, gloom, packed_light, paper_level, paper_tones
 from .panes import Glass, divided
@@ -24,7 +25,7 @@ from .sunlight import Sunlight, find_sunlight
 from .types import RenderScene, Style, people_of
 
 SET_SHADOW = 2048  # texels along the set's shadow map
-SET_TEXEL = 0.006  # metres, finest
+TEXEL = 0.006  # metres, the finest of shadow maps
 FLOOR_CELL = 0.05  # metres
 FLOOR_CELLS = 512  # most cells along the floor
 UPLOADED = (
@@ -74,7 +75,8 @@ class Loaded:
     without; shadow: the set's map; sheet, chart: what shading needs of each triangle of the set; lamps:
     light of its lamps (``lamps.py``); sunlight: what falls through windows; cells: shape of the occlusion
     volume; columns, rows: of the floor's cells; walls, people: how many can be left out; palette: matrices
-    that a moment needs; paper: for hatching, the luma that stays white, and how gloomy it is
+    that a moment needs; home: what is at home in the set; paper: for hatching, the luma that stays white, and
+    how gloomy it is
     """
 
     scene: Prepared
@@ -93,6 +95,7 @@ class Loaded:
     walls: int
     people: int
     palette: int
+    home: Home
     paper: tuple[float, float]
 
     @property
@@ -132,10 +135,11 @@ def loaded(scene: RenderScene, style: Style, backend: Backend, shading: Any) -> 
     palette = int(opaque.joints.max()) + 1 if len(opaque.joints) else 0
     paper = paper_level(opaque.light), gloom(opaque.light)
     surfaces, extent = (shadow, sheet, chart, lamps, sunlight, prepared.density.values.shape), (columns, rows)
-    moved = highest, Rig(prepared, opaque.wall_count)
-    return Loaded(
-        prepared, arrays, glass, *surfaces, *extent, *moved, opaque.wall_count, people, palette, paper
-    )
+    moved, counts = (highest, Rig(prepared, opaque.wall_count)), (opaque.wall_count, people, palette)
+    entry = entries_of(prepared)
+    arrays["entry"] = backend.upload(entry)
+    home = Home(prepared, entry, opaque.home, palette, light_basis(np.array(opaque.light.sun)), TEXEL)
+    return Loaded(prepared, arrays, glass, *surfaces, *extent, *moved, *counts, home, paper)
 
 
 def _chart(
@@ -225,8 +229,15 @@ def _set_shadow(
     depth = backend.buffer((size * size,), np.float32)
     coarse = backend.buffer((light.summary_size(size),), np.float32)
     spare = backend.buffer((light.summary_size(size),), np.float32)
-    seen = backend.buffer(vertices.shape, np.float32)
-    crew = backend.crew(1)
-    light.fit(vertices, arrays["basis"], SET_TEXEL, size, len(used), 1, seen, frame, *crew)
-    light.cast(seen, faces, casters, 0, 0, frame, size, 1, depth, spare, coarse, *backend.crew(1))
+    one = up(np.zeros(1, np.int32))
+    things = (
+        vertices,
+        arrays["basis"],
+        up(np.zeros(len(used), np.int32)),
+        up(np.ones((1, 1), np.int32)),
+        one,
+    )
+    light.fit(*things, TEXEL, size, len(used), 1, frame, *backend.crew(1))
+    target = (frame, size, 1, depth, spare, coarse)
+    light.cast(*things, faces, casters, 0, 0, *target, *backend.crew(1))
     return ShadowMap(size, frame, depth, coarse)

@@ -13,7 +13,7 @@ import psutil
 
 from .device import Backend
 from .loaded import Loaded
-from .moments import LARGE, SHADOW
+from .shadows import texels_of
 
 USUAL = 640 << 20  # bytes: twelve views of 720p of a furnished room; more draw no faster on a processor
 MOST = 4 << 30  # bytes, of a GPU with memory to spare
@@ -22,7 +22,7 @@ HOST_SHARE, GPU_SHARE = 4, 2  # a quarter of what a machine has free, and half o
 PIXEL = 20 + 3  # visibility, colour, normals and edges; the finished bytes
 RUN = 10 * 4  # of a run of pixels: solid, marks, level, what touched and copied it, lines and ends in it
 PANE = 8  # of a pixel where there is clear glass
-VERTEX = 3 * 12  # place, normal and place in the light
+VERTEX = 2 * 12  # place and normal
 CORNERS = 100  # of a triangle that is drawn, which may leave two on the screen, on the host
 CLUSTER = 16 + 4 * 9 * 16 * 4  # bounds, and corners as they are arranged for vectors
 TEXEL = 4 + 2 * 4 * 0.2  # of a shadow map, and its summaries while they are made
@@ -41,7 +41,7 @@ def bytes_of_moment(content: Loaded, height: int, vertices: int) -> int:
     """Memory of one moment, for pictures of ``height`` rows; vertices: how many are moved."""
     scene = content.scene
     moving = len(scene.clusters) - scene.moving_first
-    texels = (SHADOW if height > LARGE else SHADOW // 2) ** 2 if len(scene.casters) else 0
+    texels = texels_of(height) ** 2 if len(scene.casters) else 0
     floor = content.rows * content.columns * CELL
     return int(vertices * VERTEX + moving * CLUSTER + texels * TEXEL + floor)
 

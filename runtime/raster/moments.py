@@ -1,4 +1,4 @@
-"""What is done once for each moment, however many views look at it: skinning, bounds, shadows.
+"""What is done once for each moment, however many views look at it: skinning, bounds, shadows, contact.
 
 Assumes finite palettes. Guarantees that what is kept of a moment depends on its palette alone.
 """
@@ -15,12 +15,8 @@ from .detail import COUNT, FINEST
 from .device import Backend, vectorised
 from .loaded import Loaded
 from .resting import Lists, Taken, lists_of, needed
+from .shadows import Shadows
 from .types import Style
-
-SHADOW = 512  # texels along a moment's shadow map, for large pictures; half for small ones
-LARGE = 400  # rows of a picture from which on it is large
-TEXEL = 0.006  # metres, finest
-OUT_OF_REACH = (1e6, 1e6, 100.0)  # frame of a map that is not there
 
 Buffers = Callable[[str, tuple[int, ...], type], Any]
 
@@ -34,22 +30,21 @@ class Moments:
     those that are in all moments as in the first one, where alone they are wanted; ball: float32
     [M + 1, C, 4], bounds of the wanted ones; taken: int32 [C], 1 for those of the last moment, things that
     rest, None without; still: what says how it looks, for whoever keeps pictures of it
-    frame [M + 1, 3], size, depth, coarse: shadow maps; ground: [M + 1, 2, rows, columns] how closely things
-    stand over the floor, and over furniture
+    shadows: what falls into their light; ground: [M + 1, 2, rows, columns] how closely things stand over the
+    floor, and over furniture
     """
 
     def __init__(self, backend: Backend, buffer: Buffers, style: Style) -> None:
-        from .kernels import contact, geometry, light, skinning  # only now: they import taichi
+        from .kernels import contact, geometry, skinning  # only now: they import taichi
 
         self._backend, self._buffer, self._style = backend, buffer, style
-        self._geometry, self._light, self._contact, self._skinning = geometry, light, contact, skinning
+        self._geometry, self._contact, self._skinning = geometry, contact, skinning
         self._blend = vectorised(skinning.skin_blended) if backend.on_host else None
-        self.count, self.size = 1, 1
+        self.count, self.shadows = 1, Shadows(backend, buffer)
         nothing = np.zeros((1, 1), np.int32)
         self.wanted, self.rests = backend.upload(nothing), backend.upload(nothing[0])
         self.taken: NDArray[np.int32] | None = None
         self.still = b""
-        self._changed: Any = None
         self._cells = 1  # of floor and furniture, both
 
     def move(
@@ -72,7 +67,7 @@ class Moments:
         finest = bool(shown[..., FINEST].any())
         skinned = len(scene.rest) if finest else scene.detail.vertices
         self._reserve(loaded, len(palettes), height, skinned, lit)
-        self.taken, self.still, self._changed = None, b"", None
+        self.taken, self.still = None, b""
         if not len(palettes) or not (clusters or loaded.glass is not None):
             return
         moments = len(palettes)
@@ -88,12 +83,11 @@ class Moments:
         self.wanted, self.rests = up(wanted.astype(np.int32)), up((~restless).astype(np.int32))
         self._bound(loaded, self.wanted, moments, self.position, self.ball)
         taken = self._rest(loaded, palettes, restless) if lit and self._backend.on_host else None
-        if self.size > 1:
-            self._cast(loaded, moments, skinned, taken)
+        self.shadows.cast(loaded, self.position, palettes, None if taken is None else taken.entries)
         if self._style.occlusion and lit:
             self._touch(loaded, moments, moving)
         if lit and self._backend.on_host:
-            rest = [self.frame[moments], self._ground_of(moments)]
+            rest = [self._ground_of(moments)]
             rest += [] if taken is None else [taken.clusters, palettes[0, taken.entries]]
             self.still = b"".join(np.ascontiguousarray(part).tobytes() for part in rest)
 
@@ -183,22 +177,6 @@ class Moments:
         self.taken = taken.clusters.astype(np.int32)
         return taken
 
-    @property
-    def changed(self) -> Any:
-        """As ``coarse``, of what lies in the light of a moment and not in that in which nobody is there. Host
-        only."""
-        if self._changed is None:
-            self._changed = self.coarse
-            if self.size > 1 and (self.frame[: self.count] == self.frame[self.count]).all():
-                summary = self._light.summary_size(self.size)
-                self._changed = self._buffer("changed", (self.count * summary,), np.float32)
-                spare = self._buffer(
-                    "differing", (self.count * (self.size // self._light.FINE) ** 2,), np.float32
-                )
-                crew = self._backend.crew(self.count)
-                self._light.differing(self.depth, self.size, self.count, spare, self._changed, *crew)
-        return self._changed
-
     def _reserve(self, loaded: Loaded, palettes: int, height: int, skinned: int, lit: bool) -> None:
         """Buffers, and the moment in which nobody is there. lit: whether with shadow maps"""
         scene = loaded.scene
@@ -207,39 +185,11 @@ class Moments:
         self.position = self._buffer("position", (moments + 1, vertices, 3), np.float32)
         self.normal = self._buffer("normal", (moments + 1, vertices, 3), np.float32)
         self.ball = self._buffer("ball", (moments + 1, max(clusters, 1), 4), np.float32)
-        texels = SHADOW if height > LARGE else SHADOW // 2
-        self.size = texels if len(scene.casters) and palettes and self._style.shadows and lit else 1
         self.count = moments
-        self.frame = self._buffer("frame", (moments + 1, 3), np.float32)
-        self.depth = self._buffer("depth", ((moments + 1) * self.size**2,), np.float32)
-        summary = max(1, self._light.summary_size(self.size))
-        self.coarse = self._buffer("coarse", ((moments + 1) * summary,), np.float32)
+        self.shadows.reserve(loaded, moments, height, bool(palettes) and self._style.shadows and lit)
         self._cells = 2 * loaded.rows * loaded.columns
         self.ground = self._buffer("ground", ((moments + 1) * self._cells,), np.float32)
         if self._backend.on_host:
-            self.frame[0 if self.size == 1 else moments :] = OUT_OF_REACH
             self.ground[moments * self._cells if clusters and palettes and lit else 0 :] = 0.0
         elif not clusters:  # another scene may have left something
             self.ground.fill(0.0)
-
-    def _cast(self, loaded: Loaded, moments: int, skinned: int, taken: Taken | None) -> None:
-        """The shadow map of each moment, and that of what rests if all of them lie the same way."""
-        scene, a, size = loaded.scene, loaded.arrays, self.size
-        seen = self._buffer("seen", (moments + 1, max(skinned, 1), 3), np.float32)
-        blur = self._buffer("blur", (moments * self._light.summary_size(size),), np.float32)
-        fitted = (TEXEL, size, scene.detail.vertices, moments, seen, self.frame)
-        crew = self._backend.crew
-        self._light.fit(self.position, a["basis"], *fitted, *crew(moments))
-        kept = (self.frame, size, moments, self.depth, blur, self.coarse)
-        casters = (a["faces"], a["casters"], scene.closed_casters, loaded.static_vertices)
-        self._light.cast(seen, *casters, *kept, *crew(moments))
-        if taken is None or not len(taken.casters) or (self.frame[:moments] != self.frame[0]).any():
-            return
-        first, rest = self.frame[moments : moments + 1], seen[moments : moments + 1]
-        self._light.turn(a["basis"], taken.vertices, self.position[moments:], rest)
-        first[:] = self.frame[0]
-        summary = self._light.summary_size(size)
-        kept = (first, size, 1, self.depth[moments * size**2 :], blur, self.coarse[moments * summary :])
-        self._light.cast(
-            rest, a["faces"], taken.casters, taken.closed, loaded.static_vertices, *kept, *crew(1)
-        )

@@ -40,14 +40,11 @@ class Taken(NamedTuple):
     """Moving clusters that belong to empty sets, as they rest.
 
     clusters: bool [C]; vertices: int32, theirs; entries: int32, what of a palette moves them
-    casters: int32, triangles of them that throw shadows, of which the first ``closed`` are of closed shells
     """
 
     clusters: NDArray[np.bool_]
     vertices: NDArray[np.int32]
     entries: NDArray[np.int32]
-    casters: NDArray[np.int32]
-    closed: int
 
 
 class Rig:
@@ -71,8 +68,7 @@ class Rig:
         pairs = np.unique(pairs)
         self._cluster_of, self._kind_in = pairs // max(count, 1), pairs % max(count, 1)
         self._corners = faces
-        self._cluster, self._first = cluster, scene.static_faces
-        self._casters, self._closed = scene.casters, scene.closed_casters
+        self._cluster = cluster
         self._things = moving[:, 3] < walls if len(moving) else np.zeros(0, np.bool_)
         self._taken: Taken | None = None  # the last
         self._owner = scene.owner
@@ -98,14 +94,10 @@ class Rig:
             return None
         if self._taken is None or (self._taken.clusters != clusters).any():
             kinds = np.unique(self._kind_in[clusters[self._cluster_of]])
-            own = clusters[self._cluster[self._casters - self._first]]
-            casters = self._casters[own].astype(np.int32)
             self._taken = Taken(
                 clusters,
                 np.unique(self._corners[clusters[self._cluster]]).astype(np.int32),
                 np.unique(self._kinds[kinds]).astype(np.int32),
-                casters,
-                int(own[: self._closed].sum()),
             )
         return self._taken
 

@@ -17,7 +17,7 @@ from ..mesh import Mesh
 from ..world import Light
 
 #: Rises whenever the same scene and views may give other pixels than before; kept results go by it.
-LOOK_VERSION: int = 25
+LOOK_VERSION: int = 26
 #: In ``fitting``: a person, or a thing that is carried about.
 LOOSE = -2
 #: What guides tell of each cell of a picture: shares of the subject, of its head, of the front of that, of
@@ -76,6 +76,9 @@ class RenderScene:
         (a door's leaf) is drawn like the set: the wild wall it is in, or -1. None: all are loose
     levels: heights of its floors, rising; on them people leave contact shadows
     heads: palette indices of the joints of heads; in the bind pose their faces look along X
+    home: float32 [P, 3, 4], the matrices of things while they are where the set puts them; NaN for what is at
+        home nowhere, as joints of people are. Their shadows are kept apart from those of what moves about.
+        None: of nothing is it known
     """
 
     static: Mesh
@@ -90,6 +93,7 @@ class RenderScene:
     fitting: NDArray[np.int32] | None = None
     levels: tuple[float, ...] = (0.0,)
     heads: tuple[int, ...] = ()
+    home: NDArray[np.float32] | None = None
 
 
 def people_of(scene: RenderScene) -> int:

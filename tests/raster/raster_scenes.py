@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -99,9 +101,14 @@ def from_lists(vertices, faces, normals, color, material="plain", part=0) -> Mes
 
 
 def scene(
-    static: list[Mesh], skinned: list[Mesh], walls: list[int] | None = None, light: Light = LIGHT
+    static: list[Mesh],
+    skinned: list[Mesh],
+    walls: list[int] | None = None,
+    light: Light = LIGHT,
+    homely: Collection[int] = (),
 ) -> RenderScene:
-    """Objects 0.. of the static meshes, then of the skinned ones (joint k moves skinned mesh k)."""
+    """Objects 0.. of the static meshes, then of the skinned ones (joint k moves skinned mesh k). homely:
+    those of the skinned ones that are at home where they are built"""
     walls = walls or [-1] * len(static)
     moving = join(skinned) if skinned else empty()
     joints = np.zeros((len(moving.vertices), 4), np.int32)
@@ -122,7 +129,15 @@ def scene(
         weights=weights,
         wall_count=max([w + 1 for w in walls], default=0),
         light=light,
+        home=at_home(len(skinned), homely) if homely else None,
     )
+
+
+def at_home(count: int, homely: Collection[int]) -> NDArray[np.float32]:
+    """Where skinned meshes are at home: as they are built, or nowhere."""
+    home = np.full((count, 3, 4), np.nan, np.float32)
+    home[list(homely)] = np.eye(4, dtype=np.float32)[:3]
+    return home
 
 
 def still(count: int, moments: int = 1) -> NDArray[np.float32]:

@@ -15,7 +15,7 @@ SIZE = (96, 64)
 MOMENTS = 5
 
 
-def furnished() -> RenderScene:
+def furnished(homely: tuple[int, ...] = ()) -> RenderScene:
     """Somebody with two limbs and a detailed head, two things that may rest, on a floor with a table."""
     floor, top = box((-4, -4, -0.1), (4, 4, 0), (0.7, 0.7, 0.7)), box((-1, -1, 0.7), (1, 1, 0.8), part=1)
     head = sphere((0.6, 0.0, 1.2), (0.2, 0.2, 0.25), (0.8, 0.5, 0.4), rings=40)
@@ -24,7 +24,7 @@ def furnished() -> RenderScene:
         box((-0.1, -0.1, 0.8), (0.1, 0.1, 0.95), (0.7, 0.1, 0.1)),
         box((-2, -1, 0), (-1.4, -0.4, 0.5)),
     )
-    return scene([floor, top], [head, arm, mug, crate])
+    return scene([floor, top], [head, arm, mug, crate], homely=homely)
 
 
 def acted(crate: list[float] | None = None) -> NDArray[np.float32]:
@@ -39,11 +39,12 @@ def acted(crate: list[float] | None = None) -> NDArray[np.float32]:
 
 @pytest.mark.parametrize("look", ["board", "clay", "plain"])
 @pytest.mark.parametrize("crate", [None, [0.0, 0.0, 0.0, 0.0, 0.7], [0.2] * MOMENTS])
+@pytest.mark.parametrize("homely", [(), (2, 3)])
 def test_a_batch_with_things_that_rest_gives_what_its_moments_give(
-    look: str, crate: list[float] | None
+    look: str, crate: list[float] | None, homely: tuple[int, ...]
 ) -> None:
     drawer, palettes = Renderer("cpu", STYLES[look]), acted(crate)
-    drawer.load(furnished())
+    drawer.load(furnished(homely))
     # near and far, so that moments want other levels of detail
     eyes = [(0.6, -0.9 - 2.0 * (k % 2), 1.4) for k in range(MOMENTS)]
     views = looking(eyes, [(0.2, 0.0, 0.8)] * MOMENTS, moments=list(range(MOMENTS)))

@@ -78,6 +78,9 @@ def assemble(world: World, bodies: Mapping[str, Body]) -> StagedScene:
         weights.append(np.tile(np.array([1, 0, 0, 0], np.float32), (count, 1)))
         objects.append(np.full(len(thing.mesh.faces), thing.id, np.int32))
         fitting.append(np.full(len(thing.mesh.faces), _wall_of(thing, world), np.int32))
+    home = np.full((len(bodies) * len(PALETTE) + len(prop_entry), 3, 4), np.nan, np.float32)
+    for object_id, entry in prop_entry.items():
+        home[entry] = world.objects[object_id].world_from_object[:3]
     skinned = join(_with_own_parts(meshes))
     return StagedScene(
         world=world,
@@ -95,10 +98,11 @@ def assemble(world: World, bodies: Mapping[str, Body]) -> StagedScene:
             fitting=np.concatenate(fitting) if fitting else None,
             levels=tuple(level.height for level in world.storeys),
             heads=tuple(first + joint for first in first_joint.values() for joint in _HEAD),
+            home=home,
         ),
         first_joint=first_joint,
         prop_entry=prop_entry,
-        palette_size=len(bodies) * len(PALETTE) + len(prop_entry),
+        palette_size=len(home),
         object_ids=object_ids,
     )
 

@@ -12,13 +12,13 @@ need no further look.
 import taichi as ti
 
 from . import crew
-from .geometry import f1, f2, f3, greater, i1, i2, lesser, to_pixel, vec3
+from .geometry import bounded, f1, f2, f3, greater, i1, i2, item3, lesser, to_pixel, vec3
 
 BLOCK, BLOCK_BITS = 8, 3  # shifting is quicker than dividing what might be negative
 FINE, FINE_BITS = 4, 2
 NOWHERE = -1e9
-FINEST = 0.006  # metres, no texel is smaller
-MANY = 64  # blocks of a map that are looked at for one place
+FAR_OFF = 1e6  # metres, corner of a map that is not there
+MANY = 256  # blocks of a map that are looked at for one place
 
 
 @ti.func
@@ -40,51 +40,61 @@ def summary_size(size: int) -> int:
 def fit(
     position: f3,
     basis: f1,
+    entry: i1,
+    member: i2,
+    source: i1,
     finest: ti.f32,
     size: ti.i32,
     vertices: ti.i32,
-    moments: ti.i32,
-    seen: f3,
+    maps: ti.i32,
     frame: f2,
     queue: i1,
     slots: ti.i32,
     host: ti.template(),
 ):
-    """Light coordinates of all vertices, and the frame [M, 3] of each moment's map: its corner across the
-    light, and texels a metre.
+    """The frame [maps, 3] of each map: its corner across the light, and texels a metre; out of reach for one
+    of nothing.
 
+    entry: what moves each vertex, -1 for one that throws no shadow; member [maps, P]: 1 for what a map is of;
+    source: the moment that each map is of
     The corner lies on whole texels and the scale on half octaves, so that the map does not swim.
     """
     for slot in range(slots):
-        m = crew.task(slot, moments, queue, host)
-        if m < moments:
+        m = crew.task(slot, maps, queue, host)
+        if m < maps:
             low = vec3(1e30)
             high = vec3(-1e30)
             for v in range(vertices):
-                q = across(basis, vec3(position[m, v, 0], position[m, v, 1], position[m, v, 2]))
-                low = ti.min(low, q)
-                high = ti.max(high, q)
-                for a in ti.static(range(3)):
-                    seen[m, v, a] = q[a]
-            extent = ti.max(high.x - low.x, high.y - low.y, 1e-3)
-            texel = finest
-            while texel * (size - 8) < extent:
-                texel *= ti.sqrt(2.0)
-            frame[m, 0] = (ti.floor(low.x / texel) - 3) * texel
-            frame[m, 1] = (ti.floor(low.y / texel) - 3) * texel
-            frame[m, 2] = 1.0 / texel
+                if entry[v] >= 0 and member[m, entry[v]] != 0:
+                    q = across(basis, item3(position, source[m], v))
+                    low = ti.min(low, q)
+                    high = ti.max(high, q)
+            if low.x > high.x:
+                frame[m, 0], frame[m, 1], frame[m, 2] = FAR_OFF, FAR_OFF, 100.0
+            else:
+                extent = ti.max(high.x - low.x, high.y - low.y, 1e-3)
+                texel = finest
+                while texel * (size - 8) < extent:
+                    texel *= ti.sqrt(2.0)
+                frame[m, 0] = (ti.floor(low.x / texel) - 3) * texel
+                frame[m, 1] = (ti.floor(low.y / texel) - 3) * texel
+                frame[m, 2] = 1.0 / texel
 
 
 @ti.kernel
 def cast(
-    seen: f3,
+    position: f3,
+    basis: f1,
+    entry: i1,
+    member: i2,
+    source: i1,
     faces: i2,
     casters: i1,
     closed: ti.i32,
     offset: ti.i32,
     frame: f2,
     size: ti.i32,
-    moments: ti.i32,
+    maps: ti.i32,
     depth: f1,
     spare: f1,
     coarse: f1,
@@ -92,57 +102,50 @@ def cast(
     slots: ti.i32,
     host: ti.template(),
 ):
-    """Draw the casters into each moment's map, and the coarse map of it.
+    """Draw the casters into each map (see :func:`fit`), and the coarse map of it.
 
     closed: how many of them, the first ones, are of closed shells: what of these faces away from the light
     has something above it that faces it
     """
     for slot in range(slots):
-        m = crew.task(slot, moments, queue, host)
-        if m < moments:
+        m = crew.task(slot, maps, queue, host)
+        if m < maps:
             base = m * size * size
             for i in range(size * size):
                 depth[base + i] = NOWHERE
             for i in range(casters.shape[0]):
                 t = casters[i]
-                a = on_map(seen, m, faces[t, 0] - offset, frame)
-                b = on_map(seen, m, faces[t, 1] - offset, frame)
-                c = on_map(seen, m, faces[t, 2] - offset, frame)
-                towards = (b.x - a.x) * (c.y - a.y) - (c.x - a.x) * (b.y - a.y)
-                if towards > 0 or i >= closed:
-                    stamp(depth, base, size, a, b, c)
+                first = faces[t, 0] - offset
+                if member[m, entry[first]] != 0:
+                    a = on_map(position, source[m], first, basis, frame, m)
+                    b = on_map(position, source[m], faces[t, 1] - offset, basis, frame, m)
+                    c = on_map(position, source[m], faces[t, 2] - offset, basis, frame, m)
+                    towards = (b.x - a.x) * (c.y - a.y) - (c.x - a.x) * (b.y - a.y)
+                    if towards > 0 or i >= closed:
+                        stamp(depth, base, size, a, b, c)
             summarise(depth, base, size, spare, coarse, m)
-
-
-@ti.kernel
-def turn(basis: f1, vertices: i1, position: f3, seen: f3):
-    """Light coordinates of some vertices of one moment, as :func:`fit` gives them."""
-    for i in range(vertices.shape[0]):
-        v = vertices[i]
-        q = across(basis, vec3(position[0, v, 0], position[0, v, 1], position[0, v, 2]))
-        for a in ti.static(range(3)):
-            seen[0, v, a] = q[a]
 
 
 @ti.kernel
 def differing(
     depth: f1,
     size: ti.i32,
-    moments: ti.i32,
+    maps: ti.i32,
+    other: ti.i32,
     spare: f1,
     changed: f1,
     queue: i1,
     slots: ti.i32,
     host: ti.template(),
 ):
-    """The greatest height around each coarse block of what is in a moment's map and not in the last one, that
-    of what rests; all maps lie the same way.
+    """The greatest height around each coarse block of what is in a map and not in the ``other`` one of them;
+    all lie the same way.
 
-    changed: as ``coarse``, of which only that is written; spare: a number for each fine block of each moment
+    changed: as ``coarse``, of which only that is written; spare: a number for each fine block of each map
     """
     for slot in range(slots):
-        m = crew.task(slot, moments, queue, host)
-        if m < moments:
+        m = crew.task(slot, maps, queue, host)
+        if m < maps:
             blocks = size // FINE
             own = m * blocks * blocks
             for i in range(blocks * blocks):
@@ -151,9 +154,10 @@ def differing(
                 row = own + (y // FINE) * blocks
                 for x in range(size):
                     z = depth[(m * size + y) * size + x]
-                    if z != depth[(moments * size + y) * size + x]:
+                    there = depth[(other * size + y) * size + x]
+                    if z != there:
                         at = row + x // FINE
-                        spare[at] = greater(spare[at], z)
+                        spare[at] = greater(spare[at], greater(z, there))
             wide = size // BLOCK
             last = m * coarse_size(size) + 2 * blocks * blocks
             for j in range(wide):
@@ -208,12 +212,10 @@ def coarse_size(size):
 
 
 @ti.func
-def on_map(seen: ti.template(), m, v, frame: ti.template()):
-    return vec3(
-        (seen[m, v, 0] - frame[m, 0]) * frame[m, 2],
-        (seen[m, v, 1] - frame[m, 1]) * frame[m, 2],
-        seen[m, v, 2],
-    )
+def on_map(position: ti.template(), moment, v, basis: ti.template(), frame: ti.template(), m):
+    """A vertex in map ``m``: texels across, metres towards the light."""
+    q = across(basis, item3(position, moment, v))
+    return vec3((q.x - frame[m, 0]) * frame[m, 2], (q.y - frame[m, 1]) * frame[m, 2], q.z)
 
 
 @ti.func
@@ -276,11 +278,11 @@ def free_between(a, b, m, frame: ti.template(), size, coarse: ti.template()):
             while k <= steps and out:
                 part = share * ti.cast(k, ti.f32)
                 x, y = ax + (bx - ax) * part, ay + (by - ay) * part
-                if 0 <= x < edge and 0 <= y < edge:
-                    i, j = ti.cast(x, ti.i32) >> BLOCK_BITS, ti.cast(y, ti.i32) >> BLOCK_BITS
+                if low <= x <= high and low <= y <= high:
+                    # beyond the border there is nothing, but on the way to the next place there may be
+                    i = ti.cast(bounded(x, 0.0, edge - 1), ti.i32) >> BLOCK_BITS
+                    j = ti.cast(bounded(y, 0.0, edge - 1), ti.i32) >> BLOCK_BITS
                     out = z >= coarse[begin + j * blocks + i]
-                else:
-                    out = x < low or y < low or x > high or y > high
                 k += 1
     return out
 
@@ -301,20 +303,21 @@ def clear_over(low, high, m, frame: ti.template(), size, coarse: ti.template()):
         )
         edge = ti.cast(size + BLOCK, ti.f32)
         if right >= -BLOCK - 1 and left <= edge + 1 and above >= -BLOCK - 1 and below <= edge + 1:
-            if left < 0 or below < 0 or right >= size or above >= size:
+            # beyond its border there is nothing; what a block says is of what is around it, too
+            last = ti.cast(size - 1, ti.f32)
+            left, below = bounded(left, 0.0, last), bounded(below, 0.0, last)
+            right, above = bounded(right, 0.0, last), bounded(above, 0.0, last)
+            blocks, fine = size >> BLOCK_BITS, size >> FINE_BITS
+            begin = m * coarse_size(size) + 2 * fine * fine
+            i0, i1_ = ti.cast(left, ti.i32) >> BLOCK_BITS, ti.cast(right, ti.i32) >> BLOCK_BITS
+            j0, j1 = ti.cast(below, ti.i32) >> BLOCK_BITS, ti.cast(above, ti.i32) >> BLOCK_BITS
+            if (i1_ - i0 + 1) * (j1 - j0 + 1) > MANY:
                 out = False
             else:
-                blocks, fine = size >> BLOCK_BITS, size >> FINE_BITS
-                begin = m * coarse_size(size) + 2 * fine * fine
-                i0, i1_ = ti.cast(left, ti.i32) >> BLOCK_BITS, ti.cast(right, ti.i32) >> BLOCK_BITS
-                j0, j1 = ti.cast(below, ti.i32) >> BLOCK_BITS, ti.cast(above, ti.i32) >> BLOCK_BITS
-                if (i1_ - i0 + 1) * (j1 - j0 + 1) > MANY:
-                    out = False
-                else:
-                    for j in range(j0, j1 + 1):
-                        for i in range(i0, i1_ + 1):
-                            if low.z < coarse[begin + j * blocks + i]:
-                                out = False
+                for j in range(j0, j1 + 1):
+                    for i in range(i0, i1_ + 1):
+                        if low.z < coarse[begin + j * blocks + i]:
+                            out = False
     return out
 
 

@@ -221,7 +221,7 @@ def widen(reach: f1, views: ti.i32, width: ti.i32, height: ti.i32, wide: f1):
 
 @ti.func
 def shaded(at, m, reach: ti.template(), frame: ti.template(), size, coarse: ti.template()):
-    """Whether anything of a moment's shadow map may be in the light of a tile."""
+    """Whether anything of a shadow map may be in the light of a tile."""
     out = False
     if reach[at] <= reach[at + 1]:
         lift = lift_of(1.0 / frame[m, 2])
@@ -305,6 +305,10 @@ def find(
     frame: f2,
     size: ti.i32,
     coarse: f1,
+    home: i1,
+    home_frame: f2,
+    home_size: ti.i32,
+    home_changed: f1,
     floor: f1,
     columns: ti.i32,
     rows: ti.i32,
@@ -323,7 +327,8 @@ def find(
 ):
     """Which runs are drawn anew, all of a tile or none: their level is SHADE, others' DONE.
 
-    block: 1 where one of its runs is
+    block: 1 where one of its runs is; frame, size, coarse: of the moments' own shadow maps; home,
+    home_changed: the home map of each moment, and what lies in its light and not in that of moment ``rest``
     empty: of each view, the picture of the empty set that it goes by, -1 for none; touched: of each run,
     whether something that moves may be in it; box [views, 4]: columns and rows in which there may be
     glass that moves
@@ -345,6 +350,8 @@ def find(
                     clear = not stood_on(at, m, rest, bounds, wide, floor, columns, rows, ground)
                     if clear:
                         clear = not shaded(at, m, wide, frame, size, coarse)
+                    if clear and home[m] != home[rest]:
+                        clear = not shaded(at, home[m], wide, home_frame, home_size, home_changed)
                 for tile in range(band * each, ti.min(tiles, band * each + each)):
                     bottom = ti.min(height, tile * BAND + BAND)
                     x = run * RUN
@@ -369,6 +376,8 @@ def find(
                         anew = stood_on(at, m, rest, bounds, reach, floor, columns, rows, ground)
                         if not anew:
                             anew = shaded(at, m, reach, frame, size, coarse)
+                        if not anew and home[m] != home[rest]:
+                            anew = shaded(at, home[m], reach, home_frame, home_size, home_changed)
                     for y in range(tile * BAND, bottom):
                         level[(n * height + y) * runs + run] = SHADE if anew else DONE
                     if anew:

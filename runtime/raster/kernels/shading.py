@@ -96,6 +96,11 @@ def shading_kernels(style: Style) -> SimpleNamespace:
         size: ti.i32,
         depth_map: f1,
         coarse: f1,
+        home: i1,
+        home_frame: f2,
+        home_size: ti.i32,
+        home_depth: f1,
+        home_coarse: f1,
         nx: ti.i32,
         ny: ti.i32,
         nz: ti.i32,
@@ -158,9 +163,14 @@ def shading_kernels(style: Style) -> SimpleNamespace:
                 corner = vec3(volume_low[0], volume_low[1], volume_low[2])
                 # the row in light coordinates, and how far points are lifted off their surface for each map
                 eye_l, first_l, step_l = across(basis, eye), across(basis, first), across(basis, step)
-                texel, set_texel = 1.0 / frame[m, 2], 1.0 / set_frame[0, 2]
-                lift, set_lift = lift_of(texel), lift_of(set_texel)
-                rise, set_rise = rise_of(texel), rise_of(set_texel)
+                h = home[m]
+                texel, home_texel, set_texel = (
+                    1.0 / frame[m, 2],
+                    1.0 / home_frame[h, 2],
+                    1.0 / set_frame[0, 2],
+                )
+                lift, home_lift, set_lift = lift_of(texel), lift_of(home_texel), lift_of(set_texel)
+                rise, home_rise, set_rise = rise_of(texel), rise_of(home_texel), rise_of(set_texel)
                 last = -1
                 p0, g1, g2 = vec3(0), vec3(0), vec3(0)
                 n0, n1, n2 = vec3(0), vec3(0), vec3(0)
@@ -295,6 +305,15 @@ def shading_kernels(style: Style) -> SimpleNamespace:
                                             depth_map,
                                             coarse,
                                         )
+                                        if key_light > 0:
+                                            key_light *= lit(
+                                                q + nn_l * home_lift + vec3(0, 0, home_rise),
+                                                h,
+                                                home_frame,
+                                                home_size,
+                                                home_depth,
+                                                home_coarse,
+                                            )
                                         if key_light > 0:
                                             key_light *= lit(
                                                 q + nn_l * set_lift + vec3(0, 0, set_rise),
@@ -458,7 +477,7 @@ def shading_kernels(style: Style) -> SimpleNamespace:
                                         shade, tone, haze, kind = shade_end, tone_end, haze_end, kind_end
                                         lamp = lamp_end
                             # whether nothing that moves, and nothing of the set, can be in the light
-                            clear, own_clear = True, True
+                            clear, home_clear, own_clear = True, True, True
                             key = facing
                             if ti.static(shadows):  # noqa: SIM102
                                 if facing > 0:
@@ -478,7 +497,11 @@ def shading_kernels(style: Style) -> SimpleNamespace:
                                         clear = free_between(
                                             q_begin + off, q_end + off, m, frame, size, coarse
                                         )
-                            if flat and clear and own_clear:
+                                        off = n_l * home_lift + vec3(0, 0, home_rise)
+                                        home_clear = free_between(
+                                            q_begin + off, q_end + off, h, home_frame, home_size, home_coarse
+                                        )
+                            if flat and clear and home_clear and own_clear:
                                 start = paint_end
                                 if not (joined and painted):
                                     start = exposed(
@@ -532,7 +555,7 @@ def shading_kernels(style: Style) -> SimpleNamespace:
                                         if ti.static(shadows):
                                             nn_l = across(basis, nn)
                                     if ti.static(shadows):  # noqa: SIM102
-                                        if key_light > 0 and not (clear and own_clear):
+                                        if key_light > 0 and not (clear and home_clear and own_clear):
                                             q = eye_l + (first_l + step_l * ti.cast(xx, ti.f32)) * depth
                                             if not clear:
                                                 key_light *= lit(
@@ -542,6 +565,15 @@ def shading_kernels(style: Style) -> SimpleNamespace:
                                                     size,
                                                     depth_map,
                                                     coarse,
+                                                )
+                                            if key_light > 0 and not home_clear:
+                                                key_light *= lit(
+                                                    q + nn_l * home_lift + vec3(0, 0, home_rise),
+                                                    h,
+                                                    home_frame,
+                                                    home_size,
+                                                    home_depth,
+                                                    home_coarse,
                                                 )
                                             if key_light > 0 and not own_clear:
                                                 key_light *= lit(

@@ -82,6 +82,11 @@ def lay_sun(
     size: ti.i32,
     depth_map: f1,
     coarse: f1,
+    home: i1,
+    home_frame: f2,
+    home_size: ti.i32,
+    home_depth: f1,
+    home_coarse: f1,
     plot: f1,
     begin: i1,
     side: i1,
@@ -121,13 +126,14 @@ def lay_sun(
                 + part3(view, n, 6) * ((view[n, 15] - (y + 0.5)) / view[n, 13])
                 + step * (0.5 - view[n, 14])
             )
-            texel, set_texel = 1.0 / frame[m, 2], 1.0 / set_frame[0, 2]
+            h = home[m]
+            texel, home_texel, set_texel = 1.0 / frame[m, 2], 1.0 / home_frame[h, 2], 1.0 / set_frame[0, 2]
             towards = vec3(light[0], light[1], light[2])
             warm = vec3(sun[0], sun[1], sun[2])
             runs = (width + RUN - 1) // RUN
             last, side_t = -1, 1
             of_all = DARK  # kind of the last triangle, as it is seen
-            off, set_off, gain = vec3(0), vec3(0), vec3(0)
+            off, home_off, set_off, gain = vec3(0), vec3(0), vec3(0), vec3(0)
             for run in range(runs):
                 filled = solid[line * runs + run]  # by a triangle of the set alone
                 todo = left[line * runs + run] if sparse == 1 else EVERY
@@ -159,6 +165,7 @@ def lay_sun(
                                 side_t = side[t]
                                 n_l = across(basis, nn)
                                 off = n_l * lift_of(texel) + vec3(0, 0, rise_of(texel))
+                                home_off = n_l * lift_of(home_texel) + vec3(0, 0, rise_of(home_texel))
                                 set_off = n_l * lift_of(set_texel) + vec3(0, 0, rise_of(set_texel))
                                 gain = warm * bounded(0.3 + 0.8 * facing, 0.0, 1.0)
                             else:
@@ -174,13 +181,15 @@ def lay_sun(
                             cell, cell_end = cell_at(t, p, plot, side_t), cell_at(t, end, plot, side_t)
                             kind = kind_along(t, p, end, cell, cell_end, plot, begin, side_t, chart)
                         if kind != DARK:
-                            clear = free_between(
-                                across(basis, p) + off, across(basis, end) + off, m, frame, size, coarse
+                            q, q_end = across(basis, p), across(basis, end)
+                            clear = free_between(q + off, q_end + off, m, frame, size, coarse)
+                            home_clear = free_between(
+                                q + home_off, q_end + home_off, h, home_frame, home_size, home_coarse
                             )
                             for xx in range(x, stop):
                                 i = at + xx - x
                                 amount = ti.cast((todo >> (xx % RUN)) & 1, ti.f32)
-                                if amount > 0 and not (clear and kind == LIT):
+                                if amount > 0 and not (clear and home_clear and kind == LIT):
                                     p = eye + (first + step * ti.cast(xx, ti.f32)) / nearness(vis, i)
                                     here = kind
                                     if kind == MIXED and celled:
@@ -195,6 +204,10 @@ def lay_sun(
                                         )
                                     if amount > 0 and not clear:
                                         amount *= lit(q + off, m, frame, size, depth_map, coarse)
+                                    if amount > 0 and not home_clear:
+                                        amount *= lit(
+                                            q + home_off, h, home_frame, home_size, home_depth, home_coarse
+                                        )
                                 if amount > 0:
                                     color = decode(picture[i], linear)
                                     picture[i] = encode(color + color * gain * amount * (1.2 - color), table)

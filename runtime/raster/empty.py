@@ -137,7 +137,7 @@ class EmptySets:
             self._visibility.touched,
             self._reach,
             self._wide,
-            *(shadows.frame, shadows.size, shadows.coarse),
+            *(shadows.frame, shadows.size, shadows.coarse, shadows.each),
             *(shadows.home, shadows.home_frame, shadows.home_size, shadows.home_changed),
             a["floor"],
             *cells,

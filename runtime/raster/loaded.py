@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 
 from .adjacency import beside
 from .bake import light_basis, occlusion_volume
+from .casting import Casting, Home, casting_of
 from .device import Backend
-from .home import Home, entries_of
 from .lamps import lamp_volume
 from .looks import glass_colors, gloom, packed_light, paper_level, paper_tones
 from .panes import Glass, divided
@@ -41,7 +41,6 @@ UPLOADED = (
     "surface_object",
     "one_color",
     "head",
-    "casters",
     "area",
     "solid",
 )
@@ -75,8 +74,8 @@ class Loaded:
     without; shadow: the set's map; sheet, chart: what shading needs of each triangle of the set; lamps:
     light of its lamps (``lamps.py``); sunlight: what falls through windows; cells: shape of the occlusion
     volume; columns, rows: of the floor's cells; walls, people: how many can be left out; palette: matrices
-    that a moment needs; home: what is at home in the set; paper: for hatching, the luma that stays white, and
-    how gloomy it is
+    that a moment needs; casting: what throws shadows; home: what is at home in the set; paper: for hatching,
+    the luma that stays white, and how gloomy it is
     """
 
     scene: Prepared
@@ -95,6 +94,7 @@ class Loaded:
     walls: int
     people: int
     palette: int
+    casting: Casting
     home: Home
     paper: tuple[float, float]
 
@@ -136,10 +136,11 @@ def loaded(scene: RenderScene, style: Style, backend: Backend, shading: Any) -> 
     paper = paper_level(opaque.light), gloom(opaque.light)
     surfaces, extent = (shadow, sheet, chart, lamps, sunlight, prepared.density.values.shape), (columns, rows)
     moved, counts = (highest, Rig(prepared, opaque.wall_count)), (opaque.wall_count, people, palette)
-    entry = entries_of(prepared)
-    arrays["entry"] = backend.upload(entry)
-    home = Home(prepared, entry, opaque.home, palette, light_basis(np.array(opaque.light.sun)), TEXEL)
-    return Loaded(prepared, arrays, glass, *surfaces, *extent, *moved, *counts, home, paper)
+    casting = casting_of(prepared, opaque, palette)
+    for name in ("entry", "casters", "runs", "points", "point_end"):
+        arrays[name] = backend.upload(getattr(casting, name))
+    home = Home(prepared, casting, opaque.home, light_basis(np.array(opaque.light.sun)), TEXEL)
+    return Loaded(prepared, arrays, glass, *surfaces, *extent, *moved, *counts, casting, home, paper)
 
 
 def _chart(
@@ -229,15 +230,18 @@ def _set_shadow(
     depth = backend.buffer((size * size,), np.float32)
     coarse = backend.buffer((light.summary_size(size),), np.float32)
     spare = backend.buffer((light.summary_size(size),), np.float32)
-    one = up(np.zeros(1, np.int32))
+    count, one = len(used), up(np.zeros(1, np.int32))
     things = (
         vertices,
         arrays["basis"],
-        up(np.zeros(len(used), np.int32)),
+        up(np.zeros(count, np.int32)),
         up(np.ones((1, 1), np.int32)),
         one,
+        one,
     )
-    light.fit(*things, TEXEL, size, len(used), 1, frame, *backend.crew(1))
+    points = (up(np.arange(count, dtype=np.int32)), up(np.array([count], np.int32)))
+    light.fit(*things, *points, TEXEL, size, 1, frame, *backend.crew(1))
+    runs = up(np.array([[0, 0, len(casting)]], np.int32))
     target = (frame, size, 1, depth, spare, coarse)
-    light.cast(*things, faces, casters, 0, 0, *target, *backend.crew(1))
+    light.cast(*things, faces, casters, runs, 0, *target, *backend.crew(1))
     return ShadowMap(size, frame, depth, coarse)

@@ -41,7 +41,7 @@ def bytes_of_moment(content: Loaded, height: int, vertices: int) -> int:
     """Memory of one moment, for pictures of ``height`` rows; vertices: how many are moved."""
     scene = content.scene
     moving = len(scene.clusters) - scene.moving_first
-    texels = texels_of(height) ** 2 if len(scene.casters) else 0
+    texels = texels_of(height) ** 2 * len(content.casting.runs) if len(scene.casters) else 0
     floor = content.rows * content.columns * CELL
     return int(vertices * VERTEX + moving * CLUSTER + texels * TEXEL + floor)
 

@@ -1,8 +1,9 @@
-"""The shadow maps of moments: a close one of people and what they handle, and one of what is where it is put.
+"""The shadow maps of moments: one of each person, one of what is not where the set puts it, one of what is.
 
-A set is far larger than what its people do at a time, so a map over all that could move would leave little
-of a person's shadow. Things that are where the set puts them lie in maps of their own, the *home* maps:
-these all lie the same way, and moments with the same things at home share one.
+A set is far larger than a person, so a map over all that could move would leave little of a person's shadow.
+And were people together in one map, everybody's shadow would change as one of them walks off. So each has
+a map of its own, of texels that are always the same size. Things that are where the set puts them lie in
+*home* maps: these all lie the same way, and moments with the same things at home share one.
 
 Assumes skinned moments. Guarantees that what falls into the light of a moment depends on its palette alone.
 """
@@ -16,26 +17,28 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .device import Backend
-from .loaded import TEXEL, Loaded
+from .loaded import Loaded
 
-SHADOW = 512  # texels along a moment's own map, for large pictures; half for small ones
-HOME = 2  # times as many along a home map
 LARGE = 400  # rows of a picture from which on it is large
+SHADOW = 320  # texels along the map of a person, for large pictures; half for small ones
+TEXEL = 0.0084  # metres in large pictures, twice that in small ones: 2.6 metres, unless somebody needs more
+HOME = 1024  # texels along a home map, for large pictures; half for small ones
 OUT_OF_REACH = (1e6, 1e6, 100.0)  # frame of a map that is not there
 
 Buffers = Callable[[str, tuple[int, ...], type], Any]
 
 
 def texels_of(height: int) -> int:
-    """Texels along a moment's own map, for pictures of ``height`` rows."""
+    """Texels along the map of a person, for pictures of ``height`` rows."""
     return SHADOW if height > LARGE else SHADOW // 2
 
 
 class Shadows:
     """The shadow maps of M moments, and of one more in which only what rests is there.
 
-    frame [M + 1, 3], size, depth, coarse: the moments' own maps; home [M + 1]: the home map of each;
-    home_frame [H, 3], home_size, home_depth, home_coarse: these maps, as in ``kernels/light.py``
+    each: own maps of a moment, of what is away from home and of each person; frame [(M + 1) each, 3], size,
+    depth, coarse: these maps; home [M + 1]: the home map of each moment; home_frame [H, 3], home_size,
+    home_depth, home_coarse: the home maps, all as in ``kernels/light.py``
     """
 
     def __init__(self, backend: Backend, buffer: Buffers) -> None:
@@ -46,17 +49,19 @@ class Shadows:
         self._cast_for: tuple[Any, ...] = ()  # what they are of, and their size
         self._last_depth: Any = None
         self._changed: Any = None
-        self.count, self.size, self.home_size = 1, 1, 1
+        self.count, self.each, self.size, self.home_size = 1, 1, 1, 1
 
     def reserve(self, loaded: Loaded, moments: int, height: int, wanted: bool) -> None:
         """Buffers for ``moments``. wanted: whether there are to be any shadows; none are cast yet"""
         self.count, self._changed = moments, None
-        self.size = texels_of(height) if wanted and len(loaded.scene.casters) else 1
-        self.home_size = HOME * self.size if self.size > 1 and loaded.home.any else 1
-        summary = max(1, self._light.summary_size(self.size))
-        self.frame = self._buffer("frame", (moments + 1, 3), np.float32)
-        self.depth = self._buffer("depth", ((moments + 1) * self.size**2,), np.float32)
-        self.coarse = self._buffer("coarse", ((moments + 1) * summary,), np.float32)
+        self.size = texels_of(height) if wanted and len(loaded.casting.casters) else 1
+        self.each = len(loaded.casting.runs) if self.size > 1 else 1
+        home = HOME if height > LARGE else HOME // 2
+        self.home_size = home if self.size > 1 and loaded.home.any else 1
+        maps, summary = (moments + 1) * self.each, max(1, self._light.summary_size(self.size))
+        self.frame = self._buffer("frame", (maps, 3), np.float32)
+        self.depth = self._buffer("depth", (maps * self.size**2,), np.float32)
+        self.coarse = self._buffer("coarse", (maps * summary,), np.float32)
         self._reserve_home(1)
         self.home = self._backend.upload(np.zeros(moments + 1, np.int32))
         if self._backend.on_host:
@@ -79,62 +84,83 @@ class Shadows:
         is in the first one; None for nothing"""
         if self.size == 1:
             return
-        at_home = loaded.home.kept(palettes)
-        own, home = ~at_home, at_home
+        home = loaded.home.kept(palettes)
+        own = ~home
         if self._backend.on_host:
-            last = np.zeros(at_home.shape[1], np.bool_)
+            last = np.zeros(home.shape[1], np.bool_)
             last[[] if rests is None else rests] = True
-            own = np.concatenate([own, last & own[:1]])
-            home = np.concatenate([home, last & home[:1]])
+            own, home = (np.concatenate([some, last & some[:1]]) for some in (own, home))
         source = np.append(np.arange(self.count), 0)[: len(own)].astype(np.int32)  # what rests is as at first
         self._cast_own(loaded, position, own, source)
         if self.home_size > 1:
-            self._cast_home(loaded, position, home, source)
+            self._cast_home(loaded, position, home & loaded.home.casts, source)
 
     def _cast_own(
         self, loaded: Loaded, position: Any, member: NDArray[np.bool_], source: NDArray[np.int32]
     ) -> None:
-        a, up, light, maps = loaded.arrays, self._backend.upload, self._light, len(member)
-        crew = self._backend.crew
-        things = (position, a["basis"], a["entry"], up(member.astype(np.int32)), up(source))
-        vertices = loaded.scene.detail.vertices
-        light.fit(*things, TEXEL, self.size, vertices, maps, self.frame, *crew(maps))
-        self._cast(loaded, things, (self.frame, self.size, maps, self.depth), self.coarse)
+        groups = np.arange(self.each, dtype=np.int32)
+        of_group = member[:, None] & (loaded.casting.group == groups[:, None])
+        maps = len(member) * self.each
+        things = self._things(
+            loaded,
+            position,
+            of_group.reshape(maps, -1),
+            np.repeat(source, self.each),
+            np.tile(groups, len(member)),
+        )
+        a, finest = loaded.arrays, TEXEL * SHADOW / self.size
+        points = (a["points"], a["point_end"])
+        self._light.fit(*things, *points, finest, self.size, maps, self.frame, *self._backend.crew(maps))
+        self._cast(loaded, things, (self.frame, self.size, maps, self.depth), self.coarse, "blur")
 
     def _cast_home(
         self, loaded: Loaded, position: Any, member: NDArray[np.bool_], source: NDArray[np.int32]
     ) -> None:
         """Each home map once, and none if those that are there will do."""
-        casting = member & loaded.home.casts
-        members, first, which = np.unique(casting, axis=0, return_index=True, return_inverse=True)
+        members, first, which = np.unique(member, axis=0, return_index=True, return_inverse=True)
         maps = len(members)
         self.home = self._backend.upload(which.reshape(-1).astype(np.int32))
         self._reserve_home(maps)
+        frames = np.tile(np.array(loaded.home.frame(self.home_size), np.float32), (maps, 1))
+        self.home_frame = self._backend.upload(frames)
         wanted = (loaded.home, self.home_size)
         if wanted == self._cast_for and np.array_equal(members, self._members):
             return
-        a, up = loaded.arrays, self._backend.upload
-        frames = np.tile(np.array(loaded.home.frame(self.home_size), np.float32), (maps, 1))
-        self.home_frame = up(frames)
-        things = (position, a["basis"], a["entry"], up(members.astype(np.int32)), up(source[first]))
+        things = self._things(loaded, position, members, source[first], np.zeros(maps, np.int32))
         target = (self.home_frame, self.home_size, maps, self.home_depth)
-        self._cast(loaded, things, target, self.home_coarse)
+        self._cast(loaded, things, target, self.home_coarse, "home_blur")
         self._members, self._cast_for = members, wanted
 
+    def _things(
+        self,
+        loaded: Loaded,
+        position: Any,
+        member: NDArray[np.bool_],
+        source: NDArray[np.int32],
+        group: NDArray[np.int32],
+    ) -> tuple[Any, ...]:
+        """What maps are of, as ``light.fit`` says it."""
+        a, up = loaded.arrays, self._backend.upload
+        return (position, a["basis"], a["entry"], up(member.astype(np.int32)), up(source), up(group))
+
     def _cast(
-        self, loaded: Loaded, things: tuple[Any, ...], target: tuple[Any, int, int, Any], coarse: Any
+        self,
+        loaded: Loaded,
+        things: tuple[Any, ...],
+        target: tuple[Any, int, int, Any],
+        coarse: Any,
+        spare: str,
     ) -> None:
-        a, scene, (_, size, maps, _) = loaded.arrays, loaded.scene, target
-        name = "blur" if size == self.size else "home_blur"
-        blur = self._buffer(name, (maps * self._light.summary_size(size),), np.float32)
-        casters = (a["faces"], a["casters"], scene.closed_casters, loaded.static_vertices)
+        a, (_, size, maps, _) = loaded.arrays, target
+        blur = self._buffer(spare, (maps * self._light.summary_size(size),), np.float32)
+        casters = (a["faces"], a["casters"], a["runs"], loaded.static_vertices)
         self._light.cast(*things, *casters, *target, blur, coarse, *self._backend.crew(maps))
 
     @property
     def maps(self) -> tuple[Any, ...]:
-        """What kernels ask for that look into both."""
+        """What kernels ask for that look into all of them."""
         homes = (self.home, self.home_frame, self.home_size, self.home_depth, self.home_coarse)
-        return (self.frame, self.size, self.depth, self.coarse, *homes)
+        return (self.frame, self.size, self.depth, self.coarse, self.each, *homes)
 
     @property
     def home_changed(self) -> Any:

@@ -225,7 +225,7 @@ def test_things_that_rest_belong_to_the_empty_set(
 
     expected = drawn_anew(moments)
     assert (drawer.render(moments, views, size).color == expected.color).all()
-    assert shaded().mean() < (0.2 if homely else 0.5)
+    assert shaded().mean() < (0.2 if homely else 0.7)
     assert expected.ids is not None
     first = content.skinned_object.min()
     if homely:

@@ -11,10 +11,10 @@ from raster_scenes import LIGHT, box, looking, scene, sphere, still
 
 from runtime.mesh import Mesh
 from runtime.raster.bake import light_basis
-from runtime.raster.home import Home, entries_of
+from runtime.raster.casting import Home, casting_of
 from runtime.raster.prepare import prepare
 from runtime.raster.renderer import Renderer
-from runtime.raster.types import STYLES, RenderScene, Style
+from runtime.raster.types import LOOSE, STYLES, RenderScene, Style
 
 SIZE = (160, 96)
 SUN = replace(LIGHT, sun=(0.5, -0.3, 0.8))
@@ -68,13 +68,26 @@ def test_a_thing_throws_its_shadow_at_home_and_away_and_only_one(style: str) -> 
     assert (np.abs(picture(content, None, STYLES[style]) - picture(content, moved, STYLES[style])) > 24).any()
 
 
+def test_nobodys_shadow_changes_as_another_walks_off() -> None:
+    """Each person has a map of its own, and so has what is carried away."""
+    content = open_ground([post(0, 0), post(0.7, 0.3), post(-0.6, 0.3, 0.4)], [2])
+    owner = content.skinned_object - content.skinned_object.min()
+    people = np.where(owner < 2, LOOSE - 1 - owner, LOOSE).astype(np.int32)
+    away = still(3)
+    away[0, 1:, 0, 3] = 25.0
+    together, gone = replace(content, fitting=people), picture(replace(content, fitting=people), away)
+    np.testing.assert_array_equal(gone, picture(open_ground([post(0, 0)], [])))
+    assert (picture(together) != gone).any()
+    assert (picture(content, away) != gone).any(), "where nobody knows whose it is, all share one map"
+
+
 def test_home_is_where_the_set_puts_things() -> None:
     content = open_ground([post(0, 0), post(3, 4), post(-2, 0)], [1, 2])
     prepared = prepare(content, STYLES["board"], True)
-    entry = entries_of(prepared)
-    assert set(entry[entry >= 0]) == {0, 1, 2}
+    casting = casting_of(prepared, content, 3)
+    assert set(casting.entry[casting.points]) == {0, 1, 2}
     basis = light_basis(np.array(SUN.sun))
-    home = Home(prepared, entry, content.home, 3, basis, 0.006)
+    home = Home(prepared, casting, content.home, basis, 0.006)
     assert home.any
     assert home.casts.tolist() == [False, True, True]
     moments = still(3, 3)
@@ -87,7 +100,7 @@ def test_home_is_where_the_set_puts_things() -> None:
             across = basis[:2] @ np.array([x, y, z])
             assert ((across - corner[:2]) * corner[2] > 2).all()
             assert ((across - corner[:2]) * corner[2] < size - 4).all()
-    nowhere = Home(prepared, entry, None, 3, basis, 0.006)
+    nowhere = Home(prepared, casting, None, basis, 0.006)
     assert not nowhere.any
     assert not nowhere.kept(moments).any()
 

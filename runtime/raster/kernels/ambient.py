@@ -10,18 +10,6 @@ from .geometry import bounded
 
 
 @ti.func
-def lift_of(texel):
-    """How far points are lifted off their surface before a shadow map of that texel is asked, metres."""
-    return 0.01 + 1.8 * texel
-
-
-@ti.func
-def rise_of(texel):
-    """And how far towards the light."""
-    return 0.004 + 0.4 * texel
-
-
-@ti.func
 def soft_step(x, at, steepness):
     t = bounded((x - at) * steepness + 0.5, 0.0, 1.0)
     return t * t * (3.0 - 2.0 * t)

@@ -11,9 +11,8 @@ import numpy as np
 import taichi as ti
 from numpy.typing import NDArray
 
-from .ambient import lift_of, rise_of
 from .geometry import bounded, f1, f2, i1, i2, row3, u8s, vec3
-from .light import across, lit
+from .light import across, lifted, lit
 from .paint import SHEET
 
 MIXED, LIT, DARK = 0, 1, 2  # how the set shades a place
@@ -74,7 +73,7 @@ def survey(
             texel = 1.0 / frame[0, 2]
             if behind:
                 n = -n
-            off = across(basis, n) * lift_of(texel) + vec3(0, 0, rise_of(texel))
+            off = lifted(across(basis, n), texel)
             p = row3(vertices, faces[t, 0])
             q1, q2 = row3(vertices, faces[t, 1]) - p, row3(vertices, faces[t, 2]) - p
             share = 1.0 / ti.cast(side[t], ti.f32)

@@ -18,7 +18,28 @@ BLOCK, BLOCK_BITS = 8, 3  # shifting is quicker than dividing what might be nega
 FINE, FINE_BITS = 4, 2
 NOWHERE = -1e9
 FAR_OFF = 1e6  # metres, corner of a map that is not there
+MASK = 30  # maps of a moment that are told apart, but for one
+ALL = (1 << (MASK + 1)) - 1
 MANY = 256  # blocks of a map that are looked at for one place
+
+
+@ti.func
+def lift_of(texel):
+    """How far points are lifted off their surface before a shadow map of that texel is asked, metres."""
+    return 0.01 + 1.8 * texel
+
+
+@ti.func
+def rise_of(texel):
+    """And how far towards the light."""
+    return 0.004 + 0.4 * texel
+
+
+@ti.func
+def lifted(normal, texel):
+    """By how much points are lifted off their surface, in light coordinates, before a shadow map of that
+    texel is asked. normal: in light coordinates"""
+    return normal * lift_of(texel) + vec3(0, 0, rise_of(texel))
 
 
 @ti.func
@@ -43,9 +64,11 @@ def fit(
     entry: i1,
     member: i2,
     source: i1,
+    group: i1,
+    points: i1,
+    point_end: i1,
     finest: ti.f32,
     size: ti.i32,
-    vertices: ti.i32,
     maps: ti.i32,
     frame: f2,
     queue: i1,
@@ -55,8 +78,9 @@ def fit(
     """The frame [maps, 3] of each map: its corner across the light, and texels a metre; out of reach for one
     of nothing.
 
-    entry: what moves each vertex, -1 for one that throws no shadow; member [maps, P]: 1 for what a map is of;
-    source: the moment that each map is of
+    entry: what moves each vertex; member [maps, P]: 1 for what a map is of; source, group: the moment that
+    each map is of, and the group of things; points: vertices that throw shadows, group by group; point_end:
+    where those of each group end
     The corner lies on whole texels and the scale on half octaves, so that the map does not swim.
     """
     for slot in range(slots):
@@ -64,8 +88,13 @@ def fit(
         if m < maps:
             low = vec3(1e30)
             high = vec3(-1e30)
-            for v in range(vertices):
-                if entry[v] >= 0 and member[m, entry[v]] != 0:
+            g = group[m]
+            begin = 0
+            if g > 0:
+                begin = point_end[g - 1]
+            for i in range(begin, point_end[g]):
+                v = points[i]
+                if member[m, entry[v]] != 0:
                     q = across(basis, item3(position, source[m], v))
                     low = ti.min(low, q)
                     high = ti.max(high, q)
@@ -88,9 +117,10 @@ def cast(
     entry: i1,
     member: i2,
     source: i1,
+    group: i1,
     faces: i2,
     casters: i1,
-    closed: ti.i32,
+    runs: i2,
     offset: ti.i32,
     frame: f2,
     size: ti.i32,
@@ -102,18 +132,21 @@ def cast(
     slots: ti.i32,
     host: ti.template(),
 ):
-    """Draw the casters into each map (see :func:`fit`), and the coarse map of it.
+    """Draw the casters into each map (see :func:`fit`), and the coarse map of it; nothing where it is out of
+    reach.
 
-    closed: how many of them, the first ones, are of closed shells: what of these faces away from the light
-    has something above it that faces it
+    casters: triangles, group by group; runs [G, 3]: where those of each begin, where those of closed shells
+    end, which come first (what of these faces away from the light has something above it that faces it), and
+    where all of them end
     """
     for slot in range(slots):
         m = crew.task(slot, maps, queue, host)
-        if m < maps:
+        if m < maps and frame[m, 0] < FAR_OFF:
             base = m * size * size
             for i in range(size * size):
                 depth[base + i] = NOWHERE
-            for i in range(casters.shape[0]):
+            g = group[m]
+            for i in range(runs[g, 0], runs[g, 2]):
                 t = casters[i]
                 first = faces[t, 0] - offset
                 if member[m, entry[first]] != 0:
@@ -121,7 +154,7 @@ def cast(
                     b = on_map(position, source[m], faces[t, 1] - offset, basis, frame, m)
                     c = on_map(position, source[m], faces[t, 2] - offset, basis, frame, m)
                     towards = (b.x - a.x) * (c.y - a.y) - (c.x - a.x) * (b.y - a.y)
-                    if towards > 0 or i >= closed:
+                    if towards > 0 or i >= runs[g, 1]:
                         stamp(depth, base, size, a, b, c)
             summarise(depth, base, size, spare, coarse, m)
 
@@ -284,6 +317,41 @@ def free_between(a, b, m, frame: ti.template(), size, coarse: ti.template()):
                     j = ti.cast(bounded(y, 0.0, edge - 1), ti.i32) >> BLOCK_BITS
                     out = z >= coarse[begin + j * blocks + i]
                 k += 1
+    return out
+
+
+@ti.func
+def dimming(a, b, normal, m, each, frame: ti.template(), size, coarse: ti.template()):
+    """By which of the ``each`` maps of a moment the light between two light coordinates of a surface may be
+    kept off: bits, the last one for all from MASK on."""
+    out = 0
+    for k in range(each):
+        n = m * each + k
+        off = lifted(normal, 1.0 / frame[n, 2])
+        if not free_between(a + off, b + off, n, frame, size, coarse):
+            out |= 1 << ti.min(k, MASK)
+    return out
+
+
+@ti.func
+def lit_by_all(
+    q,
+    normal,
+    dim,
+    m,
+    each,
+    frame: ti.template(),
+    size,
+    depth: ti.template(),
+    coarse: ti.template(),
+):
+    """Share of the light that reaches light coordinates of a surface past those maps of a moment that
+    ``dim`` says (see :func:`dimming`)."""
+    out = 1.0
+    for k in range(each):
+        if (dim >> ti.min(k, MASK)) & 1 == 1 and out > 0:
+            n = m * each + k
+            out *= lit(q + lifted(normal, 1.0 / frame[n, 2]), n, frame, size, depth, coarse)
     return out
 
 

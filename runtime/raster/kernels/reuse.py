@@ -13,7 +13,6 @@ around these stair-steps are smoothed anew; everything else is copied. For the h
 import taichi as ti
 
 from . import crew
-from .ambient import lift_of
 from .chart import DARK, MIXED, SHADOW_SHIFT, cell_at
 from .contact import above_floor, floor_cell
 from .geometry import (
@@ -32,7 +31,7 @@ from .geometry import (
     u64s,
     vec3,
 )
-from .light import MANY, across, clear_over
+from .light import MANY, across, clear_over, lift_of
 from .paint import DONE, INK, RUN, SHADE, SHEET, SMOOTH
 from .rows import BAND
 from .spans import uv
@@ -305,6 +304,7 @@ def find(
     frame: f2,
     size: ti.i32,
     coarse: f1,
+    maps: ti.i32,
     home: i1,
     home_frame: f2,
     home_size: ti.i32,
@@ -327,8 +327,9 @@ def find(
 ):
     """Which runs are drawn anew, all of a tile or none: their level is SHADE, others' DONE.
 
-    block: 1 where one of its runs is; frame, size, coarse: of the moments' own shadow maps; home,
-    home_changed: the home map of each moment, and what lies in its light and not in that of moment ``rest``
+    block: 1 where one of its runs is
+    frame, size, coarse: the moments' own shadow maps, ``maps`` of one moment; home, home_changed: the home
+    map of each moment, and what lies in its light and not in that of moment ``rest``
     empty: of each view, the picture of the empty set that it goes by, -1 for none; touched: of each run,
     whether something that moves may be in it; box [views, 4]: columns and rows in which there may be
     glass that moves
@@ -348,8 +349,9 @@ def find(
                 if s >= 0:
                     at = ((s * bands + band) * runs + run) * REACH
                     clear = not stood_on(at, m, rest, bounds, wide, floor, columns, rows, ground)
-                    if clear:
-                        clear = not shaded(at, m, wide, frame, size, coarse)
+                    for k in range(m * maps, m * maps + maps):
+                        if clear:
+                            clear = not shaded(at, k, wide, frame, size, coarse)
                     if clear and home[m] != home[rest]:
                         clear = not shaded(at, home[m], wide, home_frame, home_size, home_changed)
                 for tile in range(band * each, ti.min(tiles, band * each + each)):
@@ -374,8 +376,9 @@ def find(
                     if not anew and not clear:
                         at = ((s * tiles + tile) * runs + run) * REACH
                         anew = stood_on(at, m, rest, bounds, reach, floor, columns, rows, ground)
-                        if not anew:
-                            anew = shaded(at, m, reach, frame, size, coarse)
+                        for k in range(m * maps, m * maps + maps):
+                            if not anew:
+                                anew = shaded(at, k, reach, frame, size, coarse)
                         if not anew and home[m] != home[rest]:
                             anew = shaded(at, home[m], reach, home_frame, home_size, home_changed)
                     for y in range(tile * BAND, bottom):

@@ -13,7 +13,7 @@ import taichi as ti
 
 from ..types import Style
 from . import crew
-from .ambient import area_near, lift_of, rise_of, sheltered, toned
+from .ambient import area_near, sheltered, toned
 from .chart import DARK, LIT, MIXED, SHADOW_SHIFT, cell_at, kind_along, survey
 from .geometry import (
     bounded,
@@ -34,7 +34,7 @@ from .geometry import (
     vec3,
 )
 from .lamps import lamplight
-from .light import across, free_between, lit
+from .light import ALL, across, dimming, free_between, lifted, lit, lit_by_all
 from .paint import (
     GLASS,
     GLOW,
@@ -96,6 +96,7 @@ def shading_kernels(style: Style) -> SimpleNamespace:
         size: ti.i32,
         depth_map: f1,
         coarse: f1,
+        each: ti.i32,
         home: i1,
         home_frame: f2,
         home_size: ti.i32,
@@ -161,16 +162,10 @@ def shading_kernels(style: Style) -> SimpleNamespace:
                 horizon = vec3(light[12], light[13], light[14])
                 zenith = vec3(light[15], light[16], light[17])
                 corner = vec3(volume_low[0], volume_low[1], volume_low[2])
-                # the row in light coordinates, and how far points are lifted off their surface for each map
+                # the row in light coordinates
                 eye_l, first_l, step_l = across(basis, eye), across(basis, first), across(basis, step)
                 h = home[m]
-                texel, home_texel, set_texel = (
-                    1.0 / frame[m, 2],
-                    1.0 / home_frame[h, 2],
-                    1.0 / set_frame[0, 2],
-                )
-                lift, home_lift, set_lift = lift_of(texel), lift_of(home_texel), lift_of(set_texel)
-                rise, home_rise, set_rise = rise_of(texel), rise_of(home_texel), rise_of(set_texel)
+                home_texel, set_texel = 1.0 / home_frame[h, 2], 1.0 / set_frame[0, 2]
                 last = -1
                 p0, g1, g2 = vec3(0), vec3(0), vec3(0)
                 n0, n1, n2 = vec3(0), vec3(0), vec3(0)
@@ -297,17 +292,12 @@ def shading_kernels(style: Style) -> SimpleNamespace:
                                     if key_light > 0:
                                         q = eye_l + (first_l + step_l * place) * depth
                                         nn_l = across(basis, nn)
-                                        key_light *= lit(
-                                            q + nn_l * lift + vec3(0, 0, rise),
-                                            m,
-                                            frame,
-                                            size,
-                                            depth_map,
-                                            coarse,
+                                        key_light *= lit_by_all(
+                                            q, nn_l, ALL, m, each, frame, size, depth_map, coarse
                                         )
                                         if key_light > 0:
                                             key_light *= lit(
-                                                q + nn_l * home_lift + vec3(0, 0, home_rise),
+                                                q + lifted(nn_l, home_texel),
                                                 h,
                                                 home_frame,
                                                 home_size,
@@ -316,7 +306,7 @@ def shading_kernels(style: Style) -> SimpleNamespace:
                                             )
                                         if key_light > 0:
                                             key_light *= lit(
-                                                q + nn_l * set_lift + vec3(0, 0, set_rise),
+                                                q + lifted(nn_l, set_texel),
                                                 0,
                                                 set_frame,
                                                 set_size,
@@ -477,7 +467,7 @@ def shading_kernels(style: Style) -> SimpleNamespace:
                                         shade, tone, haze, kind = shade_end, tone_end, haze_end, kind_end
                                         lamp = lamp_end
                             # whether nothing that moves, and nothing of the set, can be in the light
-                            clear, home_clear, own_clear = True, True, True
+                            dim, home_clear, own_clear = 0, True, True
                             key = facing
                             if ti.static(shadows):  # noqa: SIM102
                                 if facing > 0:
@@ -493,15 +483,12 @@ def shading_kernels(style: Style) -> SimpleNamespace:
                                         key = 0.0
                                     else:
                                         own_clear = between == LIT
-                                        off = n_l * lift + vec3(0, 0, rise)
-                                        clear = free_between(
-                                            q_begin + off, q_end + off, m, frame, size, coarse
-                                        )
-                                        off = n_l * home_lift + vec3(0, 0, home_rise)
+                                        dim = dimming(q_begin, q_end, n_l, m, each, frame, size, coarse)
+                                        off = lifted(n_l, home_texel)
                                         home_clear = free_between(
                                             q_begin + off, q_end + off, h, home_frame, home_size, home_coarse
                                         )
-                            if flat and clear and home_clear and own_clear:
+                            if flat and dim == 0 and home_clear and own_clear:
                                 start = paint_end
                                 if not (joined and painted):
                                     start = exposed(
@@ -555,20 +542,15 @@ def shading_kernels(style: Style) -> SimpleNamespace:
                                         if ti.static(shadows):
                                             nn_l = across(basis, nn)
                                     if ti.static(shadows):  # noqa: SIM102
-                                        if key_light > 0 and not (clear and home_clear and own_clear):
+                                        if key_light > 0 and not (dim == 0 and home_clear and own_clear):
                                             q = eye_l + (first_l + step_l * ti.cast(xx, ti.f32)) * depth
-                                            if not clear:
-                                                key_light *= lit(
-                                                    q + nn_l * lift + vec3(0, 0, rise),
-                                                    m,
-                                                    frame,
-                                                    size,
-                                                    depth_map,
-                                                    coarse,
+                                            if dim != 0:
+                                                key_light *= lit_by_all(
+                                                    q, nn_l, dim, m, each, frame, size, depth_map, coarse
                                                 )
                                             if key_light > 0 and not home_clear:
                                                 key_light *= lit(
-                                                    q + nn_l * home_lift + vec3(0, 0, home_rise),
+                                                    q + lifted(nn_l, home_texel),
                                                     h,
                                                     home_frame,
                                                     home_size,
@@ -577,7 +559,7 @@ def shading_kernels(style: Style) -> SimpleNamespace:
                                                 )
                                             if key_light > 0 and not own_clear:
                                                 key_light *= lit(
-                                                    q + nn_l * set_lift + vec3(0, 0, set_rise),
+                                                    q + lifted(nn_l, set_texel),
                                                     0,
                                                     set_frame,
                                                     set_size,

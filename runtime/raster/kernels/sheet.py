@@ -8,10 +8,10 @@ from functools import lru_cache
 import taichi as ti
 
 from ..types import Style
-from .ambient import lift_of, rise_of, toned
+from .ambient import toned
 from .chart import DARK, LIT, MIXED, SHADOW_SHIFT
 from .geometry import f1, f2, i2, row3, vec3
-from .light import across, lit
+from .light import across, lifted, lit
 from .paint import SHEET, pack_normal
 
 MOST_STEPS = 200  # along a triangle, to find that out
@@ -38,7 +38,7 @@ def shadow_class(
     )
     out = MIXED
     if steps < MOST_STEPS:
-        off = across(basis, n) * lift_of(texel) + vec3(0, 0, rise_of(texel))
+        off = lifted(across(basis, n), texel)
         p_l, q1_l, q2_l = across(basis, p) + off, across(basis, q1), across(basis, q2)
         least, most = 1.0, 0.0
         i = 0

@@ -11,10 +11,9 @@ key light, so that whoever stands in it throws the shadow that is there already.
 import taichi as ti
 
 from . import crew
-from .ambient import lift_of, rise_of
 from .chart import DARK, LIT, MIXED, SHADOW_SHIFT, cell_at, kind_along
 from .geometry import bounded, f1, f2, i1, i2, nearness, part3, row3, triangle, u8s, u32s, u64s, vec3
-from .light import across, free_between, lit
+from .light import across, dimming, free_between, lifted, lit, lit_by_all
 from .paint import RUN, SHADE, SHEET, decode, encode
 from .rows import EVERY
 from .sheet import shadow_class
@@ -82,6 +81,7 @@ def lay_sun(
     size: ti.i32,
     depth_map: f1,
     coarse: f1,
+    each: ti.i32,
     home: i1,
     home_frame: f2,
     home_size: ti.i32,
@@ -127,13 +127,13 @@ def lay_sun(
                 + step * (0.5 - view[n, 14])
             )
             h = home[m]
-            texel, home_texel, set_texel = 1.0 / frame[m, 2], 1.0 / home_frame[h, 2], 1.0 / set_frame[0, 2]
+            home_texel, set_texel = 1.0 / home_frame[h, 2], 1.0 / set_frame[0, 2]
             towards = vec3(light[0], light[1], light[2])
             warm = vec3(sun[0], sun[1], sun[2])
             runs = (width + RUN - 1) // RUN
             last, side_t = -1, 1
             of_all = DARK  # kind of the last triangle, as it is seen
-            off, home_off, set_off, gain = vec3(0), vec3(0), vec3(0), vec3(0)
+            n_l, home_off, set_off, gain = vec3(0), vec3(0), vec3(0), vec3(0)
             for run in range(runs):
                 filled = solid[line * runs + run]  # by a triangle of the set alone
                 todo = left[line * runs + run] if sparse == 1 else EVERY
@@ -164,9 +164,7 @@ def lay_sun(
                             if facing > GRAZING:
                                 side_t = side[t]
                                 n_l = across(basis, nn)
-                                off = n_l * lift_of(texel) + vec3(0, 0, rise_of(texel))
-                                home_off = n_l * lift_of(home_texel) + vec3(0, 0, rise_of(home_texel))
-                                set_off = n_l * lift_of(set_texel) + vec3(0, 0, rise_of(set_texel))
+                                home_off, set_off = lifted(n_l, home_texel), lifted(n_l, set_texel)
                                 gain = warm * bounded(0.3 + 0.8 * facing, 0.0, 1.0)
                             else:
                                 of_all = DARK
@@ -182,14 +180,14 @@ def lay_sun(
                             kind = kind_along(t, p, end, cell, cell_end, plot, begin, side_t, chart)
                         if kind != DARK:
                             q, q_end = across(basis, p), across(basis, end)
-                            clear = free_between(q + off, q_end + off, m, frame, size, coarse)
+                            dim = dimming(q, q_end, n_l, m, each, frame, size, coarse)
                             home_clear = free_between(
                                 q + home_off, q_end + home_off, h, home_frame, home_size, home_coarse
                             )
                             for xx in range(x, stop):
                                 i = at + xx - x
                                 amount = ti.cast((todo >> (xx % RUN)) & 1, ti.f32)
-                                if amount > 0 and not (clear and home_clear and kind == LIT):
+                                if amount > 0 and not (dim == 0 and home_clear and kind == LIT):
                                     p = eye + (first + step * ti.cast(xx, ti.f32)) / nearness(vis, i)
                                     here = kind
                                     if kind == MIXED and celled:
@@ -202,8 +200,10 @@ def lay_sun(
                                         amount = lit(
                                             q + set_off, 0, set_frame, set_size, set_depth, set_coarse
                                         )
-                                    if amount > 0 and not clear:
-                                        amount *= lit(q + off, m, frame, size, depth_map, coarse)
+                                    if amount > 0 and dim != 0:
+                                        amount *= lit_by_all(
+                                            q, n_l, dim, m, each, frame, size, depth_map, coarse
+                                        )
                                     if amount > 0 and not home_clear:
                                         amount *= lit(
                                             q + home_off, h, home_frame, home_size, home_depth, home_coarse

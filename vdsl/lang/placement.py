@@ -61,7 +61,7 @@ def place(
         )
         return
     free = Target("free", (), "", line.span)
-    at = free if line.at is None else resolve(line.at, (), scene.scope, report, any_of=True)
+    at = free if line.at is None else _where(line.at, name, scene, characters, report)
     facing = None
     if line.facing is not None:
         facing = someone_or_something(line.facing, scene, characters, report)
@@ -69,15 +69,35 @@ def place(
     if at is not None and posture == "sitting" and scene.scope is not None:
         _check_seat(at, line, scene.scope, scene.placements, report)
     holding = None if line.holding is None else held_at_first(line.holding, name, scene, report)
-    scene.placements[name] = Placement(name, at or free, facing, posture, line.span, holding)
+    scene.placements[name] = Placement(name, at or free, facing, posture, line.span, holding, line.beside)
+
+
+def _where(
+    name: ast.Name, who: str, scene: SceneBeingRead, characters: tuple[str, ...], report: Report
+) -> Target | None:
+    """Where somebody is: a place of the scene, or somebody who is placed already."""
+    if name.text not in characters:
+        there = [p.at.path for p in scene.placements.values() if p.at.kind not in ("free", "character")]
+        return resolve(name, (), scene.scope, report, any_of=True, near=there)
+    if name.text in scene.placements and name.text != who:
+        return Target("character", (name.text,), name.text, name.span)
+    report.error(
+        "VDS077",
+        name.span,
+        label=f"{name.text} is not placed yet" if name.text != who else "this is who is placed",
+        help=f"a line above says where {name.text} is, as `{name.text} at NAME`"
+        if name.text != who
+        else f"say where {who} is, as `{who} at NAME`",
+    )
+    return None
 
 
 def _check_seat(
     at: Target, line: ast.PlacementLine, scope: Scope, placed: dict[str, Placement], report: Report
 ) -> None:
-    if scope.may_have_seats_around(at) and not scope.has_seat(at):
+    if at.kind == "character" or (scope.may_have_seats_around(at) and not scope.has_seat(at)):
         return
-    if at.kind in ("free", "character") or not scope.has_seat(at):
+    if at.kind == "free" or not scope.has_seat(at):
         written = line.at or line.posture or line.character
         seats = scope.seats()
         report.error(

@@ -21,6 +21,11 @@ from .words import counts_under, fold
 ROOMS = ("set", "room", "area")
 
 
+def _shared(a: tuple[str, ...], b: tuple[str, ...]) -> int:
+    """How many parts two paths begin alike with."""
+    return next((k for k, (x, y) in enumerate(zip(a, b, strict=False)) if x != y), min(len(a), len(b)))
+
+
 @dataclass(frozen=True)
 class Found:
     """A place in a set: ``path`` from the root, without the set's name; ``spot``: its last part is one."""
@@ -57,25 +62,33 @@ class Scope:
         node = self._carried.get((who, name))
         return None if node is None else Found((who, name), node, False)
 
-    def find(self, name: Name, report: Report, any_of: bool = False) -> Target | None:
+    def find(
+        self,
+        name: Name,
+        report: Report,
+        any_of: bool = False,
+        near: Iterable[tuple[str, ...]] = (),
+    ) -> Target | None:
         """The target a name stands for; None where it was reported to be unknown or ambiguous.
 
-        any_of: of several of the same kind, all in the scene, the first one is taken, with a warning
+        any_of: of several of the same kind, or spots of several rooms, all in the scene, one is taken, with a
+        warning: the first of those that share most of their path with one of ``near``
         """
         found = self.look_up(name.parts) or (self._alike(name.text) if any_of else [])
         if len(found) == 1:
             return Target(found[0].kind, found[0].path, name.text, name.span)
-        alike = {(f.node.prop, f.spot) if f.node.prop else f.path for f in found}
+        alike = {(f.node.prop if f.node.prop else f.node.kind in ROOMS or f.path, f.spot) for f in found}
         here = all(f.path[: len(self.room)] == self.room for f in found)
         if any_of and found and here and len(alike) == 1:
-            paths = [self._shortest(f) for f in found]
+            shared = [max((_shared(f.path, path) for path in near), default=0) for f in found]
+            taken = found[shared.index(max(shared))]
             report.warn(
                 "VDS061",
                 name.span,
-                label=f"`{name.text}` could be any of {len(found)}: `{paths[0]}` is taken",
-                help=f"say which: {listing(paths)}",
+                label=f"`{name.text}` could be any of {len(found)}: `{self._shortest(taken)}` is taken",
+                help=f"say which: {listing([self._shortest(f) for f in found])}",
             )
-            return Target(found[0].kind, found[0].path, name.text, name.span)
+            return Target(taken.kind, taken.path, name.text, name.span)
         if found:
             paths = [".".join((self.root.name, *f.path)) for f in found]
             report.error(

@@ -141,9 +141,8 @@ RULES: tuple[Rule, ...] = (
          f"as in `{FORMS['scene']}`", r"at \1"),
     Rule("scene kitchen = apartment.kitchen at", "at", ("scene",), r"\s(at)\s*$", "the time of day is missing", "dawn, day, dusk or night"),
     # placements
-    Rule("anna at", "at", ("placement",), r"\s(at|on|in|facing|holding)\s*$", "a name is missing after this", f"as in `{FORMS['placement']}`"),
+    Rule("anna at", "at", ("placement",), r"\s(at|on|in|by|near|beside|to|of|facing|holding)(?:\s+(?:the|a|an))?\s*$", "a name is missing after this", f"as in `{FORMS['placement']}`"),
     Rule("anna at (1, 2)m", "(", ("placement",), r"(\()", "people are placed at something that has a name", f"as in `{FORMS['placement']}`"),
-    Rule("anna at the door", "the", ("placement",), r"\s(the|a|an)\s", "names stand without an article", f"as in `{FORMS['placement']}`", ""),
     Rule("anna at door, facing window", ",", ("placement",), r"(,)", "no commas in a placement", f"as in `{FORMS['placement']}`", ""),
     # transitions
     Rule("dissolve to black", "to black", ("transition",), rf"^\S+\s+({_N}.*?)\s*$", "only a time follows a transition", f"as in {FORMS['transition']}"),

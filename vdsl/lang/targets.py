@@ -6,7 +6,7 @@ is no target is reported at its place, and what does not show is left out with a
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from itertools import pairwise
 
 from . import ast, phrases, words
@@ -252,18 +252,23 @@ class TargetReader:
 
 
 def resolve(
-    name: ast.Name, characters: tuple[str, ...], scope: Scope | None, report: Report, any_of: bool = False
+    name: ast.Name,
+    characters: tuple[str, ...],
+    scope: Scope | None,
+    report: Report,
+    any_of: bool = False,
+    near: Iterable[tuple[str, ...]] = (),
 ) -> Target | None:
-    """A character or something in the scene; ``any_of``: of several of one kind the first will do."""
+    """A character or something in the scene; any_of, near: as in :meth:`.scope.Scope.find`"""
     if name.text in characters:
         return Target("character", (name.text,), name.text, name.span)
     if scope is None:
         return None
-    near = nearest(name.text, characters)
-    if near is not None and not scope.look_up(name.parts):
+    meant = nearest(name.text, characters)
+    if meant is not None and not scope.look_up(name.parts):
         unknown_character(name, characters, report)
         return None
-    return scope.find(name, report, any_of)
+    return scope.find(name, report, any_of, near)
 
 
 def unknown_character(word: ast.Name, characters: tuple[str, ...], report: Report) -> None:

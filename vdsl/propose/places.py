@@ -19,6 +19,7 @@ from .state import SceneState, floor_under, room_middle
 
 ARM = 0.75  # metres on the floor within which a hand reaches a thing
 TALKING = 0.88  # metres between two people face to face
+_ABREAST = 0.75  # metres between two people side by side
 _EYES = 0.93  # of the standing height
 _BESIDE = 0.16  # metres between things on a table top
 _AT_TABLE, _FACES = 0.75, 0.5  # metres from a seat to what it is drawn up to; how far it faces it, a cosine
@@ -378,6 +379,18 @@ def _before_seat(
     if found is None:  # a chair pushed in: from the side or from behind
         found = nearest_free(world, seat.position, people, within=1.3, start=start)
     return None if found is None else Stop(found[0], found[1], facing, found[2])
+
+
+def beside(name: str, state: SceneState, people: Discs) -> Stop | None:
+    """At somebody's side, looking where they look; None where there is no room."""
+    other = state.actors[name]
+    x, y, z = other.position
+    for side in (math.pi / 2, -math.pi / 2, 2.0, -2.0):
+        a = other.heading + side
+        goal = (x + _ABREAST * math.cos(a), y + _ABREAST * math.sin(a), z)
+        if _clear(state.world, goal, people) >= BODY_RADIUS:
+            return Stop(*goal[:2], other.heading, z)
+    return None
 
 
 def _before(name: str, state: SceneState, people: Discs, start: Place | None) -> Stop | None:

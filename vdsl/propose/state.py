@@ -54,12 +54,11 @@ def opening_state(
     }
     actors: dict[str, ActorState] = {}
     placed = {p.character: p for p in scene.placements}
-    for name in skeletons:
-        if name in placed:
-            state = SceneState(world, dict(actors), props, scene.room)
-            actor = _placed(placed[name], state, report)
-            if actor is not None:
-                actors[name] = actor
+    for name in _one_by_one([name for name in skeletons if name in placed], placed):
+        state = SceneState(world, dict(actors), props, scene.room)
+        actor = _placed(placed[name], state, report)
+        if actor is not None:
+            actors[name] = actor
     for name in skeletons:
         if name not in actors:
             actors[name] = _by_default(SceneState(world, dict(actors), props, scene.room))
@@ -72,6 +71,17 @@ def opening_state(
     from .bringing import holding_at_first
 
     return holding_at_first(scene, SceneState(world, ordered, props, scene.room))
+
+
+def _one_by_one(names: list[str], placed: Mapping[str, Placement]) -> list[str]:
+    """The names so that who is placed at somebody comes after them."""
+    out: list[str] = []
+    for name in names:
+        chain = [name]
+        while (at := placed[chain[-1]].at).kind == "character" and at.path[0] in placed:
+            chain.append(at.path[0])
+        out += [each for each in reversed(chain) if each not in out]
+    return out
 
 
 def grip_of(item: WorldObject) -> tuple[float, float, float]:
@@ -126,6 +136,8 @@ def _lain(placement: Placement, state: SceneState) -> ActorState | None:
 def _standing(placement: Placement, state: SceneState, report: Report) -> ActorState | None:
     from .places import approach
 
+    if placement.at.kind == "character":
+        return _with_somebody(placement, state, report)
     crowd: Discs = tuple((x, y, _APART - 0.25, z) for x, y, _, z in state.people())
     stop = approach(placement.at, state, placement.character, start=None, taken=crowd)
     stop = stop or approach(placement.at, state, placement.character, start=None)
@@ -148,6 +160,26 @@ def _standing(placement: Placement, state: SceneState, report: Report) -> ActorS
         heading = math.atan2(middle[1] - stop.y, middle[0] - stop.x) if away > 0.3 else stop.heading
         return ActorState(here, heading)
     return ActorState(here, stop.heading)
+
+
+def _with_somebody(placement: Placement, state: SceneState, report: Report) -> ActorState | None:
+    """Face to face with them, or at their side and looking where they look."""
+    from .places import approach, beside
+
+    who, other = placement.character, placement.at.path[0]
+    if other not in state.actors:  # it was reported that they have no place
+        return None
+    stop = beside(other, state, state.people(but=who)) if placement.beside else None
+    stop = stop or approach(placement.at, state, who, start=None)
+    if stop is None:
+        report.error(
+            "VDS172",
+            placement.at.span,
+            label=f"there is no floor free for {who} to stand here",
+            help=f"place {other} where there is more room",
+        )
+        return None
+    return ActorState((stop.x, stop.y, stop.z), stop.heading)
 
 
 def _has_seat(target: Target, state: SceneState) -> bool:

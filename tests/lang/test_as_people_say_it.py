@@ -69,10 +69,21 @@ def test_what_the_scene_has_is_not_brought() -> None:
 
 
 @pytest.mark.parametrize(
+    ("line", "thing"),
+    [("(anna picks up the violin)", "violin"), ("(ben looks at the letter)", "letter")],
+)
+def test_what_the_scene_has_not_is_put_about_with_a_warning(line: str, thing: str) -> None:
+    board, report = read(line)
+    assert board is not None
+    assert [(d.code, d.span.text) for d in report.diagnostics] == [("VDS083", thing)]
+    assert [(each.name, each.about, each.held) for each in board.scenes[0].carried] == [(thing, True, False)]
+
+
+@pytest.mark.parametrize(
     ("line", "code", "place"),
     [
         ("(anna opens the umbrella)", "VDS060", "umbrella"),  # nothing to be opened is brought
-        ("(anna picks up the violin)", "VDS060", "violin"),  # nor picked up
+        ("(anna walks to the piano)", "VDS060", "piano"),  # nor what cannot be carried
         ("(anna gives ben the cupp)", "VDS060", "cupp"),
         ("(ben cooks stoev)", "VDS060", "stoev"),  # so like a name that it is one
         ("(anna throws the sofa2 to ben)", "VDS060", "sofa2"),

@@ -132,6 +132,25 @@ def bring_named(
     return Target("object", path, word, span)
 
 
+def put_about(
+    word: str, span: Span, who: str, scene: SceneBeingRead, catalog: CatalogLike, report: Report
+) -> Target | None:
+    """What a line does something to and the scene has not: a prop that can be carried, lying near who acts.
+
+    None where nothing that can be carried is called so.
+    """
+    called = carried_called(word, catalog)
+    if scene.scope is None or not called:
+        return None
+    report.warn(
+        "VDS083",
+        span,
+        label=f"`{word}` is not in this scene: one is put near {who}",
+        help=f"`{who} at NAME holding {word}` puts it into a hand, a set of your own where you like",
+    )
+    return _carry(Carried(who, word, called, about=True), scene, span)
+
+
 def carried_called(word: str, catalog: CatalogLike) -> str:
     """The prop that can be carried which a word is a name of; "" for none."""
     called = word if word in catalog.names("prop") else catalog.synonyms("prop").get(fold(word), "")

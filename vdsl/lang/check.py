@@ -12,7 +12,7 @@ from pathlib import PurePath
 
 from . import ast
 from .beats import BeatReader
-from .bringing import bring, bring_named
+from .bringing import bring, bring_named, put_about
 from .catalog import CatalogLike
 from .diagnostics import Report
 from .files import used_scripts
@@ -306,6 +306,9 @@ class _Checker:
             stage.reader.mentions.bodies = self._bodies()
             stage.reader.targets.bring = lambda word, span, who: bring_named(
                 word, span, who, stage, self.catalog
+            )
+            stage.reader.targets.put_about = lambda word, span, who: put_about(
+                word, span, who, stage, self.catalog, self.report
             )
         here = tuple(name for name in names if name in stage.placements)  # so far
         stage.reader.mentions.about = here or stage.members or names

@@ -508,6 +508,13 @@ CODES: dict[str, Code] = {
         "(anna walk old table)",
         "(anna walk table)",
     ),
+    "VDS083": Code(
+        "a thing that is not in the scene",
+        "What is done is done to a thing that the set has not, but the library has. One is put near who does it, on "
+        "something or on the floor, from the beginning of the scene on.",
+        "scene two = street\n(carl pick up cup)",
+        "scene two = street\ncarl at bench holding cup\n(carl wave)",
+    ),
     "VDS079": Code(
         "someone has no place yet",
         "Someone takes part in a scene and has not been placed in it. They are put at the scene's first free spot; "

@@ -92,8 +92,8 @@ class Placement:
 class Carried:
     """A thing somebody brings to a scene: it has no place in the set; as a target, its path is who and name.
 
-    arguments: of the prop; held: in a hand when the scene opens. Else it is about them, and not to be seen
-    until an action needs it
+    arguments: of the prop; held: in a hand when the scene opens; about: lying near them then. Else they have
+    it with them, and it is not to be seen until an action needs it
     """
 
     who: str
@@ -101,6 +101,7 @@ class Carried:
     prop: str
     arguments: tuple[tuple[str, Argument], ...] = ()
     held: bool = False
+    about: bool = False
 
     @property
     def path(self) -> tuple[str, ...]:

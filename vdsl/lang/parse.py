@@ -23,7 +23,8 @@ from .syntax_errors import explain_syntax, unknown_statement
 
 #: What follows the name where a line says where somebody is.
 _PLACING = re.compile(
-    r"[ \t]+(?:at|on|in|by|near|beside|next[ \t]+to|facing|holding|sitting|standing|kneeling|crouching|lying)\b"
+    r"[ \t]+(?:at|on|in|by|near|beside|next[ \t]+to|facing|holding"
+    r"|sitting|standing|kneeling|crouching|lying)\b"
 )
 _FIRST_WORD = re.compile(r"[^\W\d][\w-]*")
 _FIRST_WORDS = re.compile(r"([^\W\d][\w-]*)(?:[ \t]+\"?([^\W\d][\w-]*))?")

@@ -26,6 +26,7 @@ class TargetReader:
 
     scope: of the scene, None where its set is unknown (then no targets are); bring: what somebody takes out
     who has not got it, as a target, from its word, where that stands and who it is; None where that cannot be
+    put_about: the same of what lies near them
     """
 
     def __init__(
@@ -36,6 +37,7 @@ class TargetReader:
         self.scope = scope
         self.report = report
         self.bring: Callable[[str, Span, str], Target | None] | None = None
+        self.put_about: Callable[[str, Span, str], Target | None] | None = None
         self.who: str | None = None  # who acts in the line that is read
         self.said: tuple[ast.Name, ...] = ()  # all words of it
 
@@ -61,7 +63,8 @@ class TargetReader:
             return None
         needs, with_first = getattr(definition, "needs", "none"), rest[:1] != () and rest[0].text == "with"
         held = {"target": 0, "any": 0, "second": 0 if with_first and len(groups) == 1 else 1}.get(needs)
-        found = [self._target(group, n == held) for n, group in enumerate(groups)]
+        things = [(not k or "object" in k) and not _drives(definition) for k in _kinds(definition)]
+        found = [self._target(group, n == held, things[n]) for n, group in enumerate(groups)]
         known = [target for target in found if target is not None]
         return known if len(known) == len(found) else None
 
@@ -107,13 +110,14 @@ class TargetReader:
             return None
         return groups
 
-    def _target(self, group: list[ast.Name], held: bool = False) -> Target | None:
+    def _target(self, group: list[ast.Name], held: bool, thing: bool) -> Target | None:
         """One target by its word, or by several words that are one name (``bus stop``), or end in one (``old
         car``).
 
-        held: it is to be in a hand, so that what the scene has not is brought, if it is a prop
+        held: it is to be in a hand, so that what the scene has not is brought, if it is a prop; thing: it may
+        be a thing, so that such a prop lies about
         """
-        group = self._without_adjectives(group, held)
+        group = self._without_adjectives(group, held or thing)
         if len(group) > 1 and self.scope is not None:
             for joint in ("_", "-"):
                 parts = (joint.join(name.text for name in group),)
@@ -122,9 +126,11 @@ class TargetReader:
             inside = ast.Name(tuple(name.text for name in group), group[0].span.to(group[-1].span))
             if self.scope.look_up(inside.parts):  # `kitchen door`
                 return self._resolve(inside)
-        if held and self.bring is not None and self.who is not None and self._is_nowhere(group):
+        about = self.put_about if thing and not self._is_kind(group) else None
+        get = self.bring if held else about
+        if get is not None and self.who is not None and self._is_nowhere(group):
             span = group[0].span.to(group[-1].span)
-            brought = self.bring("_".join(name.text for name in group), span, self.who)
+            brought = get("_".join(name.text for name in group), span, self.who)
             if brought is not None:
                 return brought
         if len(group) > 1:
@@ -186,6 +192,10 @@ class TargetReader:
         who = self.who
         own = self.scope.carried_by(who, parts[-1]) if who and len(parts) == 1 else None
         return own is None and not self.scope.look_up(parts)
+
+    def _is_kind(self, group: list[ast.Name]) -> bool:
+        """Whether the scene has such a thing, whatever it is called."""
+        return self.scope is not None and self.scope.has(("_".join(name.text for name in group),))
 
     def _is_like_something(self, group: list[ast.Name]) -> bool:
         """Whether words are probably a name in the scene, or somebody's, not quite written as it is."""
@@ -249,6 +259,18 @@ class TargetReader:
             )
             return False
         return True
+
+
+def _kinds(definition: DefinitionBase) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """What an action may be done to, first and second; () for anything."""
+    first, second = (getattr(definition, name, ()) for name in ("target_kinds", "second_kinds"))
+    return tuple(first), tuple(second)
+
+
+def _drives(definition: DefinitionBase) -> bool:
+    """Whether an action moves parts of a thing, as a door's leaf, which things that are carried have not."""
+    moves = (move for variant in getattr(definition, "variants", ()) for move in variant.part.moves)
+    return any(move.kind == "drive" for move in moves)
 
 
 def resolve(

@@ -58,7 +58,8 @@ def scene_text(storyboard: Storyboard, number: int, catalog: Catalog) -> str:
     """Digest of a scene as it opens: the set, the hour, who is there, and how pictures are taken."""
     scene = storyboard.scenes[number]
     people = people_of(scene, storyboard.characters, scene_lines(storyboard, number))
-    held = [thing for thing in scene.carried if thing.held]  # the rest shows only where a line takes it out
+    # the rest shows only where a line takes it out
+    held = [thing for thing in scene.carried if thing.held or thing.about]
     names = [scene.set, *(c.cast for c in people), *(thing.prop for thing in held)]
     board = (storyboard.fps, storyboard.rig, storyboard.size)
     return digest(

@@ -7,24 +7,30 @@ given to somebody it stays.
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 
 import numpy as np
 
 from runtime.motion.rotations import rot_z
 from runtime.motion.types import ActionClip, ActorState, PropState
+from runtime.nav import nearest_free
 from runtime.world import WorldObject
 
 from ..lang.definitions.action import ActionDef
 from ..lang.ir import Beat, Scene, StoryLine, Target
 from ..library import Catalog
-from .places import target_point
+from .places import object_target, target_point
 from .pouring import POURERS, something_to_pour
 from .state import SceneState, grip_of
 from .subjects import find_object
 
 _HANDS = ("r", "l")
 _ASIDE = 0.42  # metres from somebody's middle to what they set down
+_SMALL = 0.45  # metres; what is no larger lies on furniture
+_LOW, _HIGH = 0.35, 1.3  # metres over the floor: tops that things are put on
+_NEAR = 3.0  # metres to these
+_APART = 0.4  # metres between things on the floor
 
 
 def holding_at_first(scene: Scene, state: SceneState) -> SceneState:
@@ -34,6 +40,55 @@ def holding_at_first(scene: Scene, state: SceneState) -> SceneState:
         if item is not None and placement.character in state.actors:
             state = _in_hand(item, placement.character, state, "l")
     return state
+
+
+def lying_about(scene: Scene, state: SceneState) -> SceneState:
+    """The state with what lines do something to and the set has not, near who does it: what is small on a
+    top, if there is one, else on the floor."""
+    for thing in scene.carried:
+        item = next((o for o in state.world.objects if o.path == thing.path), None)
+        if item is None or not thing.about or thing.who not in state.actors:
+            continue
+        actor = state.actors[thing.who]
+        size = np.asarray(item.high) - np.asarray(item.low)
+        at = _on_a_top(actor, state) if size.max() < _SMALL else None
+        if at is None:
+            at = _on_the_floor(thing.who, state)
+        stands = np.eye(4)
+        stands[:3, :3], stands[:3, 3] = rot_z(np.array(actor.heading)), at
+        props = {**state.props, item.id: PropState(stands, grip_of(item))}
+        state = replace(state, props=props)
+    return state
+
+
+def _on_a_top(actor: ActorState, state: SceneState) -> tuple[float, float, float] | None:
+    """A free place on the nearest furniture that one puts things on."""
+    x, y, floor = actor.position
+    tops = [
+        (math.dist((x, y), spot.position[:2]), item)
+        for item in state.world.objects
+        for spot in item.spots
+        if spot.name.startswith("top")
+        and item.id not in state.props
+        and floor + _LOW < spot.position[2] < floor + _HIGH
+    ]
+    near = min((pair for pair in tops if pair[0] < _NEAR), key=lambda pair: pair[0], default=None)
+    return None if near is None else target_point(object_target(near[1]), state, actor.position).position
+
+
+def _on_the_floor(who: str, state: SceneState) -> tuple[float, float, float]:
+    """A free place before somebody, a few steps away."""
+    actor, people = state.actors[who], state.people()
+    x, y, floor = actor.position
+    things = [p.world_from_object[:2, 3] for p in state.props.values() if p.holder is None]
+    for turn in (0.5, -0.5, 0.0, 1.0, -1.0, 1.6, -1.6, 2.4, -2.4):
+        for far in (1.3, 0.9):
+            a = actor.heading + turn
+            goal = (x + far * math.cos(a), y + far * math.sin(a), floor)
+            found = nearest_free(state.world, goal, people, within=0.4, start=actor.position)
+            if found is not None and all(math.dist(found[:2], t) > _APART for t in things):
+                return found
+    return x + _ASIDE * math.cos(actor.heading), y + _ASIDE * math.sin(actor.heading), floor
 
 
 def with_things_at_hand(state: SceneState, line: StoryLine, catalog: Catalog | None) -> SceneState:

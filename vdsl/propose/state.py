@@ -68,9 +68,9 @@ def opening_state(
             state = SceneState(world, ordered, props, scene.room)
             ordered[placement.character] = _facing(ordered[placement.character], placement.facing, state)
     # Here: what is in a hand needs this module's state, and a scene opens with it.
-    from .bringing import holding_at_first
+    from .bringing import holding_at_first, lying_about
 
-    return holding_at_first(scene, SceneState(world, ordered, props, scene.room))
+    return lying_about(scene, holding_at_first(scene, SceneState(world, ordered, props, scene.room)))
 
 
 def _one_by_one(names: list[str], placed: Mapping[str, Placement]) -> list[str]:

@@ -37,7 +37,7 @@ def with_carried(world: World, carried: Sequence[Carried], catalog: PropCatalog)
         whole = nowhere.copy()
         whole[:3, :3] = np.eye(3)
         low, high = bounds_of(mesh.transformed(whole), whole)
-        bearer = "" if thing.held else thing.who
+        bearer = "" if thing.held or thing.about else thing.who
         assert shape.grip is not None, thing.prop
         x, y, z = shape.grip
         objects.append(

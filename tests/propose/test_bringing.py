@@ -183,3 +183,37 @@ def test_states_are_kept_where_a_line_before_brings_something_more(tmp_path: Pat
     last(after)
     last("(ben phone)\n" + after)
     last(after)
+
+
+def test_what_the_set_has_not_lies_near_who_does_something_to_it() -> None:
+    """Something small on furniture, something large on the floor, and from the first line on."""
+    lines = "(anna wave)\n(anna pick up letter)\n(anna pick up bucket)\n"
+    for place, high in (("apartment.living", 0.35), ("farmyard.yard", 0.0)):
+        text = f"character anna = woman\nscene s = {place} at day\nanna at middle\n" + lines
+        wave, letter, bucket = stage_acts(check_source(Source("x.vds", text), Report()))
+        near = wave.state.actors["anna"].position
+        things = {o.path[-1]: o.id for o in wave.staged.world.objects if o.path[:1] == ("anna",)}
+        at = {name: wave.state.props[k].world_from_object[:3, 3] for name, k in things.items()}
+        floor = near[2]
+        assert at["letter"][2] >= floor + high
+        assert at["bucket"][2] < floor + 0.05
+        for point in at.values():
+            assert 0.4 < np.hypot(point[0] - near[0], point[1] - near[1]) < 3.5
+        for act, name in ((letter, "letter"), (bucket, "bucket")):
+            after = tell(act.state, act.line, act.filming, most=1).end
+            assert things[name] in {k for _, k in after.actors["anna"].held}
+
+
+def test_of_two_things_that_lie_about_none_is_in_the_other() -> None:
+    text = (
+        "character anna = woman\nscene s = farmyard.yard at day\nanna at middle\n"
+        "(anna pick up bucket)\n(anna pick up lantern)\n"
+    )
+    act = stage_acts(check_source(Source("x.vds", text), Report()))[0]
+    points = [p.world_from_object[:2, 3] for k, p in act.state.props.items() if _is_annas(act.staged, k)]
+    assert len(points) == 2
+    assert np.linalg.norm(points[0] - points[1]) > 0.4
+
+
+def _is_annas(staged: StagedScene, number: int) -> bool:
+    return staged.world.objects[number].path[:1] == ("anna",)

@@ -78,6 +78,7 @@ class BeatReader:
         link = next((w.text for w in rest[1:] if w.text in words.PREPOSITIONS), "")
         if definition is None or named is None or character is None:
             return None
+        action, definition = self._done_to(action, definition, named)
         if of_body and mentions.may_be_own(possessed):
             spoken_of = ""  # `strokes his chin`
         if of_body and not rest and getattr(definition, "needs", "none") != "none":
@@ -107,6 +108,17 @@ class BeatReader:
                 self.report.error("VDS075", target.span, label=f"{character} cannot do this to themselves")
                 return None
         return Beat(character, action, first, second, node.span, manner)
+
+    def _done_to(
+        self, action: str, definition: DefinitionBase, named: list[Target]
+    ) -> tuple[str, DefinitionBase]:
+        """The action, or what it is where it is done to somebody."""
+        kinds: tuple[str, ...] = tuple(getattr(definition, "target_kinds", ()))
+        other: str = getattr(definition, "someone", "")
+        if not other or not named or named[0].kind != "character" or "character" in kinds:
+            return action, definition
+        found = self.catalog.get("action", other)
+        return (action, definition) if found is None else (other, found)
 
     def each_of(self, node: ast.BeatNode) -> tuple[tuple[ast.BeatNode, ...], bool]:
         """The beat for each of those it is of, as :func:`vdsl.lang.phrases.each_of` says."""

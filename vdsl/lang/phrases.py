@@ -107,6 +107,16 @@ _BODY = {
     "fist", "fists", "wrist", "leg", "legs", "knee", "knees", "foot", "feet",
 }  # fmt: skip
 
+#: Verbs that say nothing before a noun for what is done, and these nouns; what is also a thing is not among
+#: them, as a drink or a call.
+_LIGHT = {"give", "take", "do", "make", "have", "throw", "steal"}
+_DONE = {
+    "hug", "kiss", "look", "glance", "wave", "nod", "bow", "push", "slap", "punch", "pat", "salute", "shrug",
+    "smile", "wink", "frown", "shout", "cheer", "laugh", "sigh", "cough", "jump", "spin", "stretch", "curtsy",
+    "dance", "walk", "run", "stroll", "peek", "nap", "rest", "prayer", "speech", "turn", "hop", "bite",
+    "poke", "high five", "fist bump", "air kiss", "thumbs up", "kick", "tickle", "lecture", "toast",
+}  # fmt: skip
+
 _WORN_ON = ("head", "face", "nose", "finger", "wrist", "neck", "feet", "hands")
 
 Words = tuple[ast.Name, ...]
@@ -137,7 +147,7 @@ def plain(said: Words, known: Known) -> Words:
             break
         twice = len(rest) > 3 and rest[-2].text == "and" and rest[-3].text == rest[-1].text
         rest = rest[:-3] if twice else rest[:-1]  # `again and again`
-    return character + _verb_first(rest, known)
+    return character + _verb_first(_as_done(rest, known), known)
 
 
 def each_of(node: ast.BeatNode, mentions: Mentions, known: Known) -> tuple[tuple[ast.BeatNode, ...], bool]:
@@ -306,6 +316,22 @@ def _verb_first(rest: Words, known: Known) -> Words:
     by = not others or (len(others) == 1 and others[0].text in PREPOSITIONS)
     if first.text in known.named and by and known.is_action((verb, last)):
         return (verb, last, first)
+    return rest
+
+
+def _as_done(rest: Words, known: Known) -> Words:
+    """``hug ben`` for ``give ben a hug``, ``nod`` for ``give a nod``, ``look at ben`` for ``take a look at
+    ben``: the verb says nothing, and the noun is what is done."""
+    if not rest or not {rest[0].text, *plain_forms(rest[0].text)} & _LIGHT:
+        return rest
+    whom = rest[1:2] if len(rest) > 2 and rest[1].text in known.named else ()
+    after = rest[1 + len(whom) :]
+    for size in range(min(2, len(after)), 0, -1):
+        noun, others = after[:size], after[size:]
+        if " ".join(word.text for word in noun) not in _DONE or known.is_action((rest[0], *noun)):
+            continue
+        if known.is_action(noun) and (not others or others[0].text in PREPOSITIONS):
+            return (*noun, *whom, *others)
     return rest
 
 

@@ -27,7 +27,7 @@ from .subjects import find_object
 
 _HANDS = ("r", "l")
 _ASIDE = 0.42  # metres from somebody's middle to what they set down
-_SMALL = 0.45  # metres; what is no larger lies on furniture
+_SMALL = 0.32  # metres; what is no larger lies on furniture
 _LOW, _HIGH = 0.35, 1.3  # metres over the floor: tops that things are put on
 _NEAR = 3.0  # metres to these
 _APART = 0.4  # metres between things on the floor

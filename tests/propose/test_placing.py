@@ -1,0 +1,60 @@
+"""People who are placed by somebody: face to face, side by side, and on the seat beside theirs."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+
+from vdsl.lang import Report, Source
+from vdsl.pipeline.compile import stage_acts
+from vdsl.pipeline.script import check_source
+from vdsl.propose.state import SceneState
+
+HEAD = "character ben = man\ncharacter anna = woman\nscene s = {} at day\n"
+
+
+def opened(place: str, *lines: str) -> SceneState:
+    text = HEAD.format(place) + "\n".join((*lines, "(anna wave)\n"))
+    return stage_acts(check_source(Source("x.vds", text), Report()))[0].state
+
+
+@pytest.mark.parametrize("how", ["in front of", "at", "by", "near"])
+def test_face_to_face(how: str) -> None:
+    """Also where who is placed second is named first in the script."""
+    state = opened("park", "anna at fountain", f"ben {how} anna")
+    anna, ben = state.actors["anna"], state.actors["ben"]
+    assert 0.7 < math.dist(anna.position, ben.position) < 1.5
+    assert math.cos(anna.heading - ben.heading) < -0.7
+
+
+@pytest.mark.parametrize("how", ["beside", "next to"])
+def test_side_by_side(how: str) -> None:
+    state = opened("park", "anna at the fountain", f"ben {how} anna")
+    anna, ben = state.actors["anna"], state.actors["ben"]
+    assert math.cos(anna.heading - ben.heading) > 0.99
+    x, y = (b - a for a, b in zip(anna.position[:2], ben.position[:2], strict=True))
+    ahead = x * math.cos(anna.heading) + y * math.sin(anna.heading)
+    assert abs(ahead) < 0.45
+    assert 0.6 < math.hypot(x, y) < 0.9
+
+
+def test_on_the_seat_beside_theirs() -> None:
+    state = opened("apartment.living", "anna at sofa sitting", "ben beside anna sitting")
+    anna, ben = state.actors["anna"], state.actors["ben"]
+    assert ben.posture == "sitting"
+    assert 0.4 < math.dist(anna.position, ben.position) < 2.0
+
+
+def test_of_spots_of_several_rooms_that_where_others_are_is_taken() -> None:
+    report = Report()
+    text = HEAD.format("apartment") + "anna at kitchen.door\nben at middle\n(anna wave)\n"
+    acts = stage_acts(check_source(Source("x.vds", text), report))
+    anna, ben = acts[0].state.actors["anna"], acts[0].state.actors["ben"]
+    kitchen = next(o for o in acts[0].staged.world.objects if o.path == ("kitchen",))
+    for actor in (anna, ben):
+        assert kitchen.low[0] - 0.5 < actor.position[0] < kitchen.high[0] + 0.5
+        assert kitchen.low[1] - 0.5 < actor.position[1] < kitchen.high[1] + 0.5
+    (warning,) = report.diagnostics
+    assert warning.code == "VDS061"
+    assert "`kitchen.middle` is taken" in warning.label

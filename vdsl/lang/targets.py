@@ -211,54 +211,42 @@ class TargetReader:
 
     def fits(self, node: ast.BeatNode, action: str, definition: DefinitionBase, named: list[Target]) -> bool:
         """Whether the targets are what the action takes."""
-        wants: str = getattr(definition, "target", "optional")
-        second: str = getattr(definition, "second", "none")
-        kinds: tuple[str, ...] = tuple(getattr(definition, "target_kinds", ()))
-        kind_words = " or ".join(KIND_WORDS.get(kind, kind) for kind in kinds) or "a target"
-        if wants == "required" and not named:
-            self.report.error(
-                "VDS072",
-                node.span,
-                label=f"`{action}` needs {kind_words}",
-                help=f"as in `({node.words[0].text} {action} …)`",
-            )
-            return False
-        if wants == "none" and named:
-            self.report.error(
-                "VDS073", named[0].span, label=f"`{action}` takes no target", help="leave it out"
-            )
-            return False
-        if second == "required" and len(named) == 1:
-            self.report.error(
-                "VDS072",
-                node.span,
-                label=f"`{action}` needs a second target",
-                help=f"as in `({node.words[0].text} {action} {named[0].written} to …)`",
-            )
-            return False
-        if second == "none" and len(named) == 2:
-            self.report.error(
-                "VDS073", named[1].span, label=f"`{action}` takes no second target", help="leave it out"
-            )
-            return False
-        also: tuple[str, ...] = tuple(getattr(definition, "second_kinds", ()))
-        if len(named) == 2 and also and not kind_fits(named[1], also):
-            second_words = " or ".join(KIND_WORDS.get(kind, kind) for kind in also)
-            self.report.error(
-                "VDS074",
-                named[1].span,
-                label=f"the second target of `{action}` is {second_words}",
-                help=f"`{named[1].written}` is {_is(named[1])}",
-            )
-            return False
-        if named and kinds and not kind_fits(named[0], kinds):
-            self.report.error(
-                "VDS074",
-                named[0].span,
-                label=f"`{action}` is done to {kind_words}, `{named[0].written}` is {_is(named[0])}",
-            )
-            return False
-        return True
+        amiss = _amiss(node, action, definition, named)
+        if amiss is not None:
+            code, span, label, help = amiss
+            self.report.error(code, span, label=label, help=help)
+        return amiss is None
+
+
+def _amiss(
+    node: ast.BeatNode, action: str, definition: DefinitionBase, named: list[Target]
+) -> tuple[str, Span, str, str | None] | None:
+    """What is wrong with the targets of an action, as code, place, label and help: their number, then their
+    kinds, the second one's first."""
+    kinds, also = _kinds(definition)
+    wants = {
+        n: getattr(definition, n, default) for n, default in (("target", "optional"), ("second", "none"))
+    }
+    example = " ".join((node.words[0].text, action, *(target.written for target in named[:1])))
+    if wants["target"] == "required" and not named:
+        return "VDS072", node.span, f"`{action}` needs {_words(kinds)}", f"as in `({example} …)`"
+    if wants["second"] == "required" and len(named) == 1:
+        return "VDS072", node.span, f"`{action}` needs a second target", f"as in `({example} to …)`"
+    if wants["target"] == "none" and named:
+        return "VDS073", named[0].span, f"`{action}` takes no target", "leave it out"
+    if wants["second"] == "none" and len(named) == 2:
+        return "VDS073", named[1].span, f"`{action}` takes no second target", "leave it out"
+    if len(named) == 2 and also and not kind_fits(named[1], also):
+        label = f"the second target of `{action}` is {_words(also)}"
+        return "VDS074", named[1].span, label, f"`{named[1].written}` is {_is(named[1])}"
+    if named and kinds and not kind_fits(named[0], kinds):
+        label = f"`{action}` is done to {_words(kinds)}, `{named[0].written}` is {_is(named[0])}"
+        return "VDS074", named[0].span, label, None
+    return None
+
+
+def _words(kinds: tuple[str, ...]) -> str:
+    return " or ".join(KIND_WORDS.get(kind, kind) for kind in kinds) or "a target"
 
 
 def _kinds(definition: DefinitionBase) -> tuple[tuple[str, ...], tuple[str, ...]]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from vdsl.emit.words import line_words
 from vdsl.lang import Report, Source, check, parse
 from vdsl.lang.ir import Beat, Storyboard
 from vdsl.library import Catalog
@@ -226,19 +227,41 @@ def test_what_is_there_is_named_and_part_of_no_verb() -> None:
     assert told(beat("(anna talks on the phone)", "office")) == ("phone", "phone", "", "")
 
 
-def test_two_things_in_a_line_are_told() -> None:
-    for line, first, second in (
-        ("anna walks to the window and looks out", "anna walks to the window", "anna looks out"),
-        ("anna picks up the cup and gives it to ben", "anna picks up the cup", "anna gives it to ben"),
-        ("anna waves and laughs", "anna waves", "anna laughs"),
-    ):
-        _, report = read(f"({line})")
-        assert report.errors[0].help == (
-            f"a line says one thing; were these two meant, one below the other? `({first})` `({second})`"
-        )
+def test_one_thing_after_the_other_is_two_lines_filmed_alike() -> None:
+    text = (
+        "(ben sits down and reads the newspaper) / (static medium) 4s\n"
+        "(she picks up the cup and slowly gives it to ben)\n"
+        "(anna and ben laugh and wave)\n"
+        "(they wave and laugh and clap) / (static full)\n"
+    )
+    board, report = read(text)
+    assert board is not None, report.errors
+    found = [(line_words(line, ""), [b.character for b in line.beats]) for line in board.lines]
+    both = ["anna", "ben"]
+    assert found == [
+        ("ben sits down", ["ben"]),
+        ("ben reads the newspaper", ["ben"]),
+        ("anna picks up the cup", ["anna"]),
+        ("anna slowly gives it to ben", ["anna"]),
+        ("anna and ben laugh", both),
+        ("anna and ben wave", both),
+        ("they wave", both),
+        ("they laugh", both),
+        ("they clap", both),
+    ]
+    assert [shot.scales for line in board.lines[:2] for shot in line.shots] == [("medium",)] * 2
+    first, second = (line.shots[0].duration for line in board.lines[:2])
+    assert first == 4.0 != second
+    assert [b.target.path[-1] for b in board.lines[3].beats if b.target] == ["cup"]
+
+
+def test_two_targets_are_no_two_things_done() -> None:
     _, report = read("character carl = man\ncarl at door\n(carl looks at anna and ben)")
     assert report.errors[0].help is not None
     assert report.errors[0].help.endswith("`(carl looks at anna)` `(carl looks at ben)`")
+    for line in ("(anna picks up the cup and saucer)", "(ben walks to the door and window)"):
+        _, report = read(line)
+        assert [d.code for d in report.errors] == ["VDS073"], line
 
 
 def test_two_who_are_named_are_each_of_them_or_do_it_to_each_other() -> None:

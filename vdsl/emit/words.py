@@ -15,6 +15,8 @@ def beat_words(beat: Beat) -> str:
     """What somebody does, as the script says it: ``anna gives ben the cup``; of what no script says, ``anna
     give cup to ben``, without a target that goes without saying."""
     said = beat.span.text.strip().removeprefix("(").removesuffix(")").split()
+    if beat.who is not None:
+        said = [*beat.who.text.split(), *said]
     if said[0] in ONE:
         return " ".join((beat.character, *said[1:]))
     if said[0] in (beat.character, *BOTH, *ALL) or said[1:2] == ["and"]:

@@ -24,6 +24,8 @@ _MOST_ACTION_WORDS = 5
 _MOST_LISTED = 30
 #: `pour jug into glass` and `pour glass from jug` are one: what is in the hand is the second target.
 _INTO = ("to", "in", "into", "on", "onto")
+#: Options of one shot, which of what is done one after the other is the first.
+_OF_ONE = ("duration", "say", "note", "name")
 #: `talk on the phone` is done with it, `look at the phone` to it.
 _BY_WHICH = ("on", "into")
 
@@ -107,7 +109,22 @@ class BeatReader:
             if target.kind == "character" and target.path[0] == character:
                 self.report.error("VDS075", target.span, label=f"{character} cannot do this to themselves")
                 return None
-        return Beat(character, action, first, second, node.span, manner)
+        return Beat(character, action, first, second, node.span, manner, who=node.who)
+
+    def one_by_one(self, node: ast.StoryNode) -> tuple[ast.StoryNode, ...]:
+        """``(ben sits down and reads)`` as two lines, filmed alike; what is said of one is of the first."""
+        if len(node.beats) != 1:
+            return (node,)
+        said = node.beats[0].words
+        who, does = phrases.one_after_the_other(said, self.targets.is_name, self._is_action)
+        if len(does) == 1:
+            return (node,)
+        named, lines = who[0].span.to(who[-1].span), []
+        for n, done in enumerate(does):
+            begins = who[0] if n == 0 else done[0]
+            beat = ast.BeatNode((*who, *done), begins.span.to(done[-1].span), None if n == 0 else named)
+            lines.append(replace(node, beats=(beat,)) if n == 0 else _filmed_alike(node, beat))
+        return tuple(lines)
 
     def _done_to(
         self, action: str, definition: DefinitionBase, named: list[Target]
@@ -255,3 +272,13 @@ def _is_second(definition: DefinitionBase, named: list[Target]) -> bool:
         return False
     kinds, also = (tuple(getattr(definition, name, ())) for name in ("target_kinds", "second_kinds"))
     return bool(kinds) and bool(also) and not kind_fits(named[0], kinds) and kind_fits(named[0], also)
+
+
+def _filmed_alike(node: ast.StoryNode, beat: ast.BeatNode) -> ast.StoryNode:
+    """The line of a beat that comes after the first one of ``node``."""
+
+    def kept(options: tuple[ast.Option, ...]) -> tuple[ast.Option, ...]:
+        return tuple(each for each in options if words.fold(each.name.text) not in _OF_ONE)
+
+    cameras = tuple(replace(camera, options=kept(camera.options)) for camera in node.cameras)
+    return replace(node, beats=(beat,), options=kept(node.options), cameras=cameras)

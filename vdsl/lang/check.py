@@ -310,9 +310,14 @@ class _Checker:
             stage.reader.targets.put_about = lambda word, span, who: put_about(
                 word, span, who, stage, self.catalog, self.report
             )
-        here = tuple(name for name in names if name in stage.placements)  # so far
-        stage.reader.mentions.about = here or stage.members or names
-        done = tuple(beat for each in node.beats for beat in self._beats(stage.reader, each, stage))
+        for line in stage.reader.one_by_one(node):
+            self._line(line, stage, stage.reader)
+
+    def _line(self, node: ast.StoryNode, stage: SceneBeingRead, reader: BeatReader) -> None:
+        """One line of the story, in which everybody does one thing."""
+        here = tuple(name for name in self.characters if name in stage.placements)  # so far
+        reader.mentions.about = here or stage.members or tuple(self.characters)
+        done = tuple(beat for each in node.beats for beat in self._beats(reader, each, stage))
         self._together(done)
         for beat in done:
             stage.hands.act(beat)

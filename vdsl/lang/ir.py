@@ -131,6 +131,7 @@ class Beat:
 
     manner: how it is done (a word of :data:`runtime.motion.manner.MANNERS`), "" where nothing was said
     brought: what it is done with where the line names nothing: a thing somebody has about them, or in a hand
+    who: where the script says who acts, if not at the beginning of ``span``
     """
 
     character: str
@@ -140,6 +141,7 @@ class Beat:
     span: Span = field(compare=False, repr=False)
     manner: str = ""
     brought: Target | None = None
+    who: Span | None = field(default=None, compare=False, repr=False)
 
 
 @dataclass(frozen=True)

@@ -181,6 +181,30 @@ def each_of(node: ast.BeatNode, mentions: Mentions, known: Known) -> tuple[tuple
     return _done_by(node, names, rest), len(names) == 2 and len(mentions.about) != 2
 
 
+def one_after_the_other(
+    said: Words, is_name: Callable[[ast.Name], bool], is_action: Callable[[Words], bool]
+) -> tuple[Words, tuple[Words, ...]]:
+    """Who acts, and what they do one after the other: ``sits down`` and ``reads`` of ``ben sits down and
+    reads``."""
+    at = 1
+    while at + 1 < len(said) and said[at].text == "and":
+        at += 2  # who acts
+    who, rest = said[:at], said[at:]
+    third = rest[:1] != () and rest[0].text.endswith("s")
+
+    def begins(after: Words) -> bool:
+        """Whether a verb follows, in the form of the first one."""
+        while len(after) > 1 and _says_how(after[0]):
+            after = after[1:]
+        if not after or is_name(after[0]) or (third and not after[0].text.endswith("s")):
+            return False
+        return any(is_action(after[:size]) for size in range(1, min(3, len(after)) + 1))
+
+    cuts = [k for k, word in enumerate(rest) if k and word.text == "and" and begins(rest[k + 1 :])]
+    ends = zip([0, *(k + 1 for k in cuts)], [*cuts, len(rest)], strict=True)
+    return who, tuple(rest[begin:end] for begin, end in ends)
+
+
 def _done_by(node: ast.BeatNode, who: Words, rest: Words) -> tuple[ast.BeatNode, ...]:
     return tuple(replace(node, words=(one, *rest)) for one in who)
 

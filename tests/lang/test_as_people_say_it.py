@@ -242,7 +242,7 @@ def test_one_thing_after_the_other_is_two_lines_filmed_alike() -> None:
         ("ben sits down", ["ben"]),
         ("ben reads the newspaper", ["ben"]),
         ("anna picks up the cup", ["anna"]),
-        ("anna slowly gives it to ben", ["anna"]),
+        ("anna gives it to ben", ["anna"]),
         ("anna and ben laugh", both),
         ("anna and ben wave", both),
         ("they wave", both),
@@ -253,6 +253,61 @@ def test_one_thing_after_the_other_is_two_lines_filmed_alike() -> None:
     first, second = (line.shots[0].duration for line in board.lines[:2])
     assert first == 4.0 != second
     assert [b.target.path[-1] for b in board.lines[3].beats if b.target] == ["cup"]
+
+
+@pytest.mark.parametrize(
+    ("line", "done"),
+    [
+        ("(anna trips and falls)", ["fall-down"]),
+        ("(anna and ben kiss and hug)", ["kiss", "hug"]),
+        ("(ben stops and then runs away)", ["stop", "run"]),
+        ("(anna stands up and starts to cry)", ["stand-up", "cry"]),
+        ("(anna looks at the cup and picks it up)", ["look", "pick-up"]),
+        ("(they sit down and drink)", ["sit", "drink"]),
+        ("(anna has a look around)", ["look-around"]),
+        ("(anna takes a quick look at ben)", ["look"]),
+    ],
+)
+def test_what_is_done_one_after_the_other(line: str, done: list[str]) -> None:
+    board, report = read(line)
+    assert board is not None, [d.label for d in report.errors]
+    assert [each.beats[0].action for each in board.lines] == done
+
+
+def test_no_glass_stands_about_where_a_line_means_the_water() -> None:
+    text = "character anna = woman\nscene s = beach\nanna at middle\n(anna looks at the water)\n"
+    script, report = parse(Source("x.vds", text))
+    check(script, Catalog.for_script(script, report), report)
+    assert [(d.code, d.span.text) for d in report.errors] == [("VDS060", "water")]
+
+
+def test_they_all_do_both() -> None:
+    board, _ = read("character carl = man\ncarl at door\n(they all laugh and clap)")
+    assert board is not None
+    assert [[b.character for b in line.beats] for line in board.lines] == [["anna", "ben", "carl"]] * 2
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        "(ben takes a punch from anna)",  # who takes one does not hit
+        "(anna carries bags and boxes)",
+        "(anna slowly picks up the cup and box)",
+        "(anna enters with a bucket)",  # nothing to walk to
+        "(ben sits on the stone)",
+    ],
+)
+def test_what_would_be_misread_is_an_error(line: str) -> None:
+    board, report = read(line)
+    assert report.errors, board and [b for each in board.lines for b in each.beats]
+
+
+def test_what_lies_about_is_what_an_action_needs() -> None:
+    board, _ = read("(anna looks at the guitar)\n(anna plays guitar)")
+    assert board is not None
+    look, play = (line.beats[0] for line in board.lines)
+    assert look.target == play.target
+    assert play.brought is None
 
 
 def test_two_targets_are_no_two_things_done() -> None:

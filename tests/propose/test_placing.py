@@ -8,7 +8,8 @@ import pytest
 
 from vdsl.lang import Report, Source
 from vdsl.pipeline.compile import stage_acts
-from vdsl.pipeline.script import check_source
+from vdsl.pipeline.script import ScriptError, check_source
+from vdsl.propose.places import near_on_foot
 from vdsl.propose.state import SceneState
 
 HEAD = "character ben = man\ncharacter anna = woman\nscene s = {} at day\n"
@@ -37,6 +38,29 @@ def test_side_by_side(how: str) -> None:
     ahead = x * math.cos(anna.heading) + y * math.sin(anna.heading)
     assert abs(ahead) < 0.45
     assert 0.6 < math.hypot(x, y) < 0.9
+
+
+def test_facing_counts_for_who_is_placed_by_them() -> None:
+    state = opened("park", "anna at fountain facing pond", "ben beside anna")
+    assert math.cos(state.actors["anna"].heading - state.actors["ben"].heading) > 0.999
+    state = opened("apartment.living", "anna at window facing sofa", "ben in front of anna")
+    anna, ben = state.actors["anna"], state.actors["ben"]
+    toward = math.atan2(ben.position[1] - anna.position[1], ben.position[0] - anna.position[0])
+    assert math.cos(toward - anna.heading) > 0.4
+
+
+def test_nobody_is_placed_behind_a_wall() -> None:
+    state = opened("apartment", "anna at living.coats", "ben in front of anna")
+    anna, ben = state.actors["anna"], state.actors["ben"]
+    assert near_on_foot(state.world, anna.position, ben.position)
+
+
+def test_two_who_are_placed_by_each_other_are_an_error() -> None:
+    report = Report()
+    text = HEAD.format("park") + "anna facing pond\nben at anna\nanna at ben\n(anna wave)\n"
+    with pytest.raises(ScriptError):
+        check_source(Source("x.vds", text), report)
+    assert [d.code for d in report.errors] == ["VDS077"]
 
 
 def test_on_the_seat_beside_theirs() -> None:

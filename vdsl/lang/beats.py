@@ -116,7 +116,9 @@ class BeatReader:
         if len(node.beats) != 1:
             return (node,)
         said = node.beats[0].words
-        who, does = phrases.one_after_the_other(said, self.targets.is_name, self._is_action)
+        who, does = phrases.one_after_the_other(
+            said, self.targets.is_name, self.targets.is_thing, self._is_action
+        )
         if len(does) == 1:
             return (node,)
         named, lines = who[0].span.to(who[-1].span), []

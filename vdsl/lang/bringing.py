@@ -23,6 +23,10 @@ if TYPE_CHECKING:
     from .placement import SceneBeingRead
 
 
+#: Props that are also called by what is in them.
+_VESSELS = ("glass", "cup", "wine_glass", "beer_glass", "can")
+
+
 def held_at_first(
     written: ast.Name | ast.Call, who: str, scene: SceneBeingRead, report: Report
 ) -> Target | None:
@@ -109,6 +113,9 @@ def bring(beat: Beat, scene: SceneBeingRead, catalog: CatalogLike) -> Beat:
     if held and getattr(definition, "unless_held", False):
         return beat
     path = (beat.character, brings)
+    if path in scene.carried and scene.carried[path].about:  # it lies there: that one is meant
+        there = Target("object", path, brings, beat.span, implied=True)
+        return replace(beat, target=there) if slot == "target" else replace(beat, second=there)
     if path not in scene.carried:
         if not getattr(scene.scope.prop(brings), "movable", False):
             return beat
@@ -140,8 +147,8 @@ def put_about(
     None where nothing that can be carried is called so.
     """
     called = carried_called(word, catalog)
-    if scene.scope is None or not called:
-        return None
+    if scene.scope is None or not called or (called != word and called in _VESSELS):
+        return None  # `looks at the water`
     report.warn(
         "VDS083",
         span,
@@ -166,6 +173,15 @@ def check_brings(definition: DefinitionBase, at: Span, catalog: CatalogLike, rep
         report.error("VDS115", at, label=f"there is no prop `{name}`", suggestion=meant, fix=meant)
     elif (prop := catalog.get("prop", name)) is not None and not getattr(prop, "movable", False):
         report.error("VDS145", at, label=f"`{name}` is nothing one holds")
+
+
+def check_someone(definition: DefinitionBase, at: Span, catalog: CatalogLike, report: Report) -> None:
+    """Report an action that is no action where it is done to somebody; ``at``: where it says so."""
+    name: str = getattr(definition, "someone", "")
+    known = catalog.names("action")
+    if name not in known:
+        meant = nearest(name, known)
+        report.error("VDS071", at, label=f"no action is called `{name}`", suggestion=meant, fix=meant)
 
 
 def _kind_of(path: tuple[str, ...], scope: Scope) -> str | None:

@@ -476,7 +476,7 @@ CODES: dict[str, Code] = {
     "VDS077": Code(
         "someone who is not in the scene",
         "The camera can only be on, and people can only face, who is in the scene: who is placed in it, or does "
-        "something in it.",
+        "something in it. And they can only be placed by somebody whom a line above places.",
         "(anna walk) focus carl",
         "carl at counter\n(anna walk) focus carl",
     ),

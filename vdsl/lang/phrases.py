@@ -107,14 +107,16 @@ _BODY = {
     "fist", "fists", "wrist", "leg", "legs", "knee", "knees", "foot", "feet",
 }  # fmt: skip
 
-#: Verbs that say nothing before a noun for what is done, and these nouns; what is also a thing is not among
-#: them, as a drink or a call.
-_LIGHT = {"give", "take", "do", "make", "have", "throw", "steal"}
-_DONE = {
-    "hug", "kiss", "look", "glance", "wave", "nod", "bow", "push", "slap", "punch", "pat", "salute", "shrug",
-    "smile", "wink", "frown", "shout", "cheer", "laugh", "sigh", "cough", "jump", "spin", "stretch", "curtsy",
-    "dance", "walk", "run", "stroll", "peek", "nap", "rest", "prayer", "speech", "turn", "hop", "bite",
-    "poke", "high five", "fist bump", "air kiss", "thumbs up", "kick", "tickle", "lecture", "toast",
+#: Verbs that say nothing before a noun for what is done. What is also a thing is not among the nouns, as a
+#: drink or a call; and who takes or has a punch does not hit.
+_LIGHT = {"give", "take", "do", "make", "have", "has", "throw", "steal"}
+_DONE_ALONE = {
+    "look", "glance", "bow", "walk", "run", "stroll", "nap", "stretch", "jump", "spin", "turn", "laugh",
+    "peek", "hop", "dance", "sigh", "curtsy",
+}  # fmt: skip
+_DONE = _DONE_ALONE | {
+    "hug", "kiss", "wave", "nod", "push", "slap", "punch", "pat", "salute", "shrug", "smile", "wink", "frown",
+    "shout", "cheer", "cough", "high five", "fist bump", "thumbs up", "kick", "tickle", "lecture",
 }  # fmt: skip
 
 _WORN_ON = ("head", "face", "nose", "finger", "wrist", "neck", "feet", "hands")
@@ -182,27 +184,52 @@ def each_of(node: ast.BeatNode, mentions: Mentions, known: Known) -> tuple[tuple
 
 
 def one_after_the_other(
-    said: Words, is_name: Callable[[ast.Name], bool], is_action: Callable[[Words], bool]
+    said: Words,
+    is_name: Callable[[ast.Name], bool],
+    is_thing: Callable[[ast.Name], bool],
+    is_action: Callable[[Words], bool],
 ) -> tuple[Words, tuple[Words, ...]]:
     """Who acts, and what they do one after the other: ``sits down`` and ``reads`` of ``ben sits down and
-    reads``."""
-    at = 1
+    reads``. is_thing: whether a word is also one for a thing"""
+    at = 2 if [word.text for word in said[:2]] == ["they", "all"] else 1
     while at + 1 < len(said) and said[at].text == "and":
-        at += 2  # who acts
+        at += 2
     who, rest = said[:at], said[at:]
-    third = rest[:1] != () and rest[0].text.endswith("s")
+    verb = next((word for word in rest if not _says_how(word)), None)
+    third = verb is not None and _is_third(verb)
 
-    def begins(after: Words) -> bool:
-        """Whether a verb follows, in the form of the first one."""
-        while len(after) > 1 and _says_how(after[0]):
-            after = after[1:]
-        if not after or is_name(after[0]) or (third and not after[0].text.endswith("s")):
-            return False
-        return any(is_action(after[:size]) for size in range(1, min(3, len(after)) + 1))
+    def begins(k: int) -> int | None:
+        """Where a verb in the form of the first one stands after the ``and`` at ``k``."""
+        at = k + 1
+        while at + 1 < len(rest) and _says_how(rest[at]):
+            at += 1
+        after = rest[at:]
+        if not after or is_name(after[0]) or third != _is_third(after[0]):
+            return None
+        if any(is_action(rest[: at + size]) for size in (1, 2) if at + size <= len(rest)):
+            return None  # `trips and falls` is one action
+        object_before = k > 1 and rest[k - 1].text not in PARTICLES and not _says_how(rest[k - 1])
+        if (
+            object_before
+            and len(after) == 1
+            and any(is_thing(word) for word in (*after, *of_several(after[0])))
+        ):
+            return None  # `the hat and box`
+        after = _without_auxiliary(after, is_action)
+        apart = any(is_action((after[0], word)) for word in after[1:4] if word.text in PARTICLES)
+        known = apart or any(is_action(after[:size]) for size in range(1, min(3, len(after)) + 1))
+        return at if known else None
 
-    cuts = [k for k, word in enumerate(rest) if k and word.text == "and" and begins(rest[k + 1 :])]
-    ends = zip([0, *(k + 1 for k in cuts)], [*cuts, len(rest)], strict=True)
+    cuts = [
+        (k, verb_at) for k, word in enumerate(rest) if k and word.text == "and" and (verb_at := begins(k))
+    ]
+    ends = zip([0, *(verb_at for _, verb_at in cuts)], [*(k for k, _ in cuts), len(rest)], strict=True)
     return who, tuple(rest[begin:end] for begin, end in ends)
+
+
+def _is_third(verb: ast.Name) -> bool:
+    """Whether a verb is in the third person: ``walks``, and not ``kiss``."""
+    return verb.text.endswith("s") and not verb.text.endswith("ss")
 
 
 def _done_by(node: ast.BeatNode, who: Words, rest: Words) -> tuple[ast.BeatNode, ...]:
@@ -346,15 +373,17 @@ def _verb_first(rest: Words, known: Known) -> Words:
 def _as_done(rest: Words, known: Known) -> Words:
     """``hug ben`` for ``give ben a hug``, ``nod`` for ``give a nod``, ``look at ben`` for ``take a look at
     ben``: the verb says nothing, and the noun is what is done."""
-    if not rest or not {rest[0].text, *plain_forms(rest[0].text)} & _LIGHT:
+    verbs = {rest[0].text, *plain_forms(rest[0].text)} & _LIGHT if rest else set()
+    if not verbs:
         return rest
     whom = rest[1:2] if len(rest) > 2 and rest[1].text in known.named else ()
-    after = rest[1 + len(whom) :]
-    for size in range(min(2, len(after)), 0, -1):
-        noun, others = after[:size], after[size:]
-        if " ".join(word.text for word in noun) not in _DONE or known.is_action((rest[0], *noun)):
+    nouns = _DONE if verbs & {"give", "throw"} else _DONE_ALONE
+    begin = 1 + len(whom)
+    for at, size in ((begin, 2), (begin, 1), (begin + 1, 2), (begin + 1, 1)):  # `a quick look`
+        noun, others = rest[at : at + size], rest[at + size :]
+        if " ".join(word.text for word in noun) not in nouns or known.is_action((rest[0], *noun)):
             continue
-        if known.is_action(noun) and (not others or others[0].text in PREPOSITIONS):
+        if known.is_action(noun) and (not others or others[0].text in (*PREPOSITIONS, *PARTICLES)):
             return (*noun, *whom, *others)
     return rest
 

@@ -1,7 +1,7 @@
 """Where people are in a scene at first: placement lines, and those who appear without one.
 
-Assumes characters and a scene that are known. Guarantees that everyone is placed once, that who sits has a
-seat of their own, and that who acts has a place.
+Assumes characters and a scene that are known. Guarantees that everyone is placed once, that who sits at a
+thing has a seat of their own, and that who acts has a place.
 """
 
 from __future__ import annotations
@@ -79,8 +79,18 @@ def _where(
     if name.text not in characters:
         there = [p.at.path for p in scene.placements.values() if p.at.kind not in ("free", "character")]
         return resolve(name, (), scene.scope, report, any_of=True, near=there)
-    if name.text in scene.placements and name.text != who:
+    by, chain = name.text, [who]
+    while by in scene.placements and by not in chain:
+        chain.append(by)
+        at = scene.placements[by].at
+        by = at.path[0] if at.kind == "character" else ""
+    if not by:
         return Target("character", (name.text,), name.text, name.span)
+    if by in chain and len(chain) > 1:
+        report.error(
+            "VDS077", name.span, label=f"{name.text} is placed by {who}", help="place one by a thing"
+        )
+        return None
     report.error(
         "VDS077",
         name.span,

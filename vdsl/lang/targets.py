@@ -46,6 +46,12 @@ class TargetReader:
         known = self.scope is not None and bool(self.scope.look_up(word.parts))
         return known or word.text in self.characters
 
+    def is_thing(self, word: ast.Name) -> bool:
+        """Whether a word is one for a prop."""
+        return word.text in self.catalog.names("prop") or words.fold(word.text) in self.catalog.synonyms(
+            "prop"
+        )
+
     def named(
         self, rest: tuple[ast.Name, ...], definition: DefinitionBase, verb: ast.Name
     ) -> list[Target] | None:
@@ -63,8 +69,12 @@ class TargetReader:
             return None
         needs, with_first = getattr(definition, "needs", "none"), rest[:1] != () and rest[0].text == "with"
         held = {"target": 0, "any": 0, "second": 0 if with_first and len(groups) == 1 else 1}.get(needs)
-        things = [(not k or "object" in k) and not _drives(definition) for k in _kinds(definition)]
-        found = [self._target(group, n == held, things[n]) for n, group in enumerate(groups)]
+        things = [(not k or "object" in k) and _is_done_to(definition) for k in _kinds(definition)]
+        before = {id(word): last.text for last, word in pairwise((verb, *rest))}
+        found = [
+            self._target(group, n == held, things[n] and before.get(id(group[0])) != "with")
+            for n, group in enumerate(groups)
+        ]
         known = [target for target in found if target is not None]
         return known if len(known) == len(found) else None
 
@@ -255,10 +265,12 @@ def _kinds(definition: DefinitionBase) -> tuple[tuple[str, ...], tuple[str, ...]
     return tuple(first), tuple(second)
 
 
-def _drives(definition: DefinitionBase) -> bool:
-    """Whether an action moves parts of a thing, as a door's leaf, which things that are carried have not."""
+def _is_done_to(definition: DefinitionBase) -> bool:
+    """Whether an action is done to a thing as such: it goes nowhere, nobody sits or lies on it, and moves no
+    part of it, as a door's leaf, which things that are carried have not."""
     moves = (move for variant in getattr(definition, "variants", ()) for move in variant.part.moves)
-    return any(move.kind == "drive" for move in moves)
+    still = getattr(definition, "group", "") not in ("going", "posture")
+    return still and not any(move.kind == "drive" for move in moves)
 
 
 def resolve(

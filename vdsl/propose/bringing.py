@@ -20,7 +20,7 @@ from runtime.world import WorldObject
 from ..lang.definitions.action import ActionDef
 from ..lang.ir import Beat, Scene, StoryLine, Target
 from ..library import Catalog
-from .places import object_target, target_point
+from .places import approach, near_on_foot, object_target, target_point
 from .pouring import POURERS, something_to_pour
 from .state import SceneState, grip_of
 from .subjects import find_object
@@ -30,7 +30,7 @@ _ASIDE = 0.42  # metres from somebody's middle to what they set down
 _SMALL = 0.32  # metres; what is no larger lies on furniture
 _LOW, _HIGH = 0.35, 1.3  # metres over the floor: tops that things are put on
 _NEAR = 3.0  # metres to these
-_APART = 0.4  # metres between things on the floor
+_APART, _BESIDE = 0.4, 0.14  # metres between things on the floor, and on furniture
 
 
 def holding_at_first(scene: Scene, state: SceneState) -> SceneState:
@@ -47,7 +47,8 @@ def lying_about(scene: Scene, state: SceneState) -> SceneState:
     top, if there is one, else on the floor."""
     for thing in scene.carried:
         item = next((o for o in state.world.objects if o.path == thing.path), None)
-        if item is None or not thing.about or thing.who not in state.actors:
+        held = item is not None and item.id in state.props and state.props[item.id].holder is not None
+        if item is None or held or not thing.about or thing.who not in state.actors:
             continue
         actor = state.actors[thing.who]
         size = np.asarray(item.high) - np.asarray(item.low)
@@ -72,8 +73,16 @@ def _on_a_top(actor: ActorState, state: SceneState) -> tuple[float, float, float
         and item.id not in state.props
         and floor + _LOW < spot.position[2] < floor + _HIGH
     ]
-    near = min((pair for pair in tops if pair[0] < _NEAR), key=lambda pair: pair[0], default=None)
-    return None if near is None else target_point(object_target(near[1]), state, actor.position).position
+    things = [p.world_from_object[:3, 3] for p in state.props.values() if p.holder is None]
+    for away, item in sorted(tops, key=lambda pair: pair[0]):
+        if away > _NEAR:
+            break
+        at = target_point(object_target(item), state, actor.position).position
+        stop = approach(object_target(item), state, "", start=actor.position)
+        free = all(math.dist(at, thing) > _BESIDE for thing in things)
+        if free and stop is not None and near_on_foot(state.world, actor.position, (stop.x, stop.y, stop.z)):
+            return at
+    return None
 
 
 def _on_the_floor(who: str, state: SceneState) -> tuple[float, float, float]:
@@ -88,7 +97,8 @@ def _on_the_floor(who: str, state: SceneState) -> tuple[float, float, float]:
             found = nearest_free(state.world, goal, people, within=0.4, start=actor.position)
             if found is not None and all(math.dist(found[:2], t) > _APART for t in things):
                 return found
-    return x + _ASIDE * math.cos(actor.heading), y + _ASIDE * math.sin(actor.heading), floor
+    a = actor.heading + 0.7 * len(things)  # there is no room at all: not all in one place
+    return x + _ASIDE * math.cos(a), y + _ASIDE * math.sin(a), floor
 
 
 def with_things_at_hand(state: SceneState, line: StoryLine, catalog: Catalog | None) -> SceneState:

@@ -8,7 +8,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from runtime.motion.types import TargetPoint
-from runtime.nav import BODY_RADIUS, Discs, grid_of, level_at, nearest_free, reachable
+from runtime.nav import BODY_RADIUS, Discs, find_paths, grid_of, level_at, nearest_free, reachable
+from runtime.paths import length
 from runtime.world import Spot, World, WorldObject
 
 from ..lang.ir import Target
@@ -381,16 +382,30 @@ def _before_seat(
     return None if found is None else Stop(found[0], found[1], facing, found[2])
 
 
-def beside(name: str, state: SceneState, people: Discs) -> Stop | None:
-    """At somebody's side, looking where they look; None where there is no room."""
-    other = state.actors[name]
+def with_somebody(name: str, who: str, state: SceneState, beside: bool) -> Stop | None:
+    """Face to face with somebody, or at their side and looking where they look, with no wall between; None
+    where there is no room."""
+    other, people = state.actors[name], state.people(but=who)
     x, y, z = other.position
-    for side in (math.pi / 2, -math.pi / 2, 2.0, -2.0):
-        a = other.heading + side
-        goal = (x + _ABREAST * math.cos(a), y + _ABREAST * math.sin(a), z)
-        if _clear(state.world, goal, people) >= BODY_RADIUS:
-            return Stop(*goal[:2], other.heading, z)
-    return None
+    ahead = (0.0, 0.35, -0.35, 0.7, -0.7, 1.1, -1.1, 1.6, -1.6, 2.2, -2.2, math.pi)
+    turns, aways = (
+        ((math.pi / 2, -math.pi / 2, 2.0, -2.0), (_ABREAST,)) if beside else (ahead, (TALKING, 1.1))
+    )
+    for turn in turns:
+        for far in aways:
+            a = other.heading + turn
+            goal = (x + far * math.cos(a), y + far * math.sin(a), z)
+            if _clear(state.world, goal, people) >= BODY_RADIUS and near_on_foot(
+                state.world, (x, y, z), goal
+            ):
+                return Stop(*goal[:2], other.heading if beside else _towards(goal, (x, y)), z)
+    return with_somebody(name, who, state, False) if beside else _before(name, state, people, None)
+
+
+def near_on_foot(world: World, start: Point, goal: Point) -> bool:
+    """Whether the way between two places is hardly longer than they are apart."""
+    ways = find_paths(world, start, goal)
+    return bool(ways) and length(ways[0]) < 1.5 * math.dist(start[:2], goal[:2]) + 0.6
 
 
 def _before(name: str, state: SceneState, people: Discs, start: Place | None) -> Stop | None:

@@ -57,6 +57,13 @@ def opening_state(
     for name in _one_by_one([name for name in skeletons if name in placed], placed):
         state = SceneState(world, dict(actors), props, scene.room)
         actor = _placed(placed[name], state, report)
+        facing = placed[name].facing
+        if (
+            actor is not None
+            and facing is not None
+            and (facing.kind != "character" or _is_in(facing, actors))
+        ):
+            actor = _facing(actor, facing, replace(state, actors={**actors, name: actor}))
         if actor is not None:
             actors[name] = actor
     for name in skeletons:
@@ -73,12 +80,18 @@ def opening_state(
     return lying_about(scene, holding_at_first(scene, SceneState(world, ordered, props, scene.room)))
 
 
+def _is_in(target: Target, actors: Mapping[str, ActorState]) -> bool:
+    return target.path[0] in actors
+
+
 def _one_by_one(names: list[str], placed: Mapping[str, Placement]) -> list[str]:
     """The names so that who is placed at somebody comes after them."""
     out: list[str] = []
     for name in names:
         chain = [name]
         while (at := placed[chain[-1]].at).kind == "character" and at.path[0] in placed:
+            if at.path[0] in chain:
+                break
             chain.append(at.path[0])
         out += [each for each in reversed(chain) if each not in out]
     return out
@@ -102,9 +115,7 @@ def _placed(placement: Placement, state: SceneState, report: Report) -> ActorSta
             report.error(
                 "VDS171",
                 placement.at.span,
-                label="nobody can sit here"
-                if not _has_seat(placement.at, state)
-                else "somebody sits here already",
+                label=_no_seat(placement.at, state),
                 help="place them at a chair or a sofa (a thing with a `seat` spot), or leave out `sitting`",
             )
             return None
@@ -164,13 +175,12 @@ def _standing(placement: Placement, state: SceneState, report: Report) -> ActorS
 
 def _with_somebody(placement: Placement, state: SceneState, report: Report) -> ActorState | None:
     """Face to face with them, or at their side and looking where they look."""
-    from .places import approach, beside
+    from .places import with_somebody
 
     who, other = placement.character, placement.at.path[0]
     if other not in state.actors:  # it was reported that they have no place
         return None
-    stop = beside(other, state, state.people(but=who)) if placement.beside else None
-    stop = stop or approach(placement.at, state, who, start=None)
+    stop = with_somebody(other, who, state, placement.beside)
     if stop is None:
         report.error(
             "VDS172",
@@ -182,10 +192,13 @@ def _with_somebody(placement: Placement, state: SceneState, report: Report) -> A
     return ActorState((stop.x, stop.y, stop.z), stop.heading)
 
 
-def _has_seat(target: Target, state: SceneState) -> bool:
+def _no_seat(target: Target, state: SceneState) -> str:
+    """Why nobody can sit at a target."""
     from .places import seats
 
-    return bool(seats(target, state.world))
+    if target.kind == "character":
+        return f"no seat is free near {target.path[0]}"
+    return "somebody sits here already" if seats(target, state.world) else "nobody can sit here"
 
 
 def _facing(actor: ActorState, facing: Target, state: SceneState) -> ActorState:

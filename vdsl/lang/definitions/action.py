@@ -112,6 +112,7 @@ class ActionDef(DefinitionBase):
     brings: str = ""
     unless_held: bool = False
     someone: str = ""
+    someone_at: Span | None = field(default=None, compare=False, repr=False)
     brings_at: Span | None = field(default=None, compare=False, repr=False)
 
 
@@ -195,6 +196,7 @@ def _settings(
         else None,
         unless_held=settings["brings"].word("unless", "", ("held",)) != "" if "brings" in settings else False,
         someone=settings["someone"].value_word(0, "") if "someone" in settings else "",
+        someone_at=settings["someone"].entry.span if "someone" in settings else None,
     )  # fmt: skip
 
 

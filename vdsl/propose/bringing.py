@@ -1,4 +1,4 @@
-"""Things people have with them: in a hand when a scene opens, or taken out where a line needs them.
+"""Things people have with them: in a hand as a scene opens, near them, or taken out where a line needs them.
 
 What somebody has about them is in no place, and not among a state's props, until it is in a hand. It is put
 away between two lines, as off the picture, when they do something that it is not for; where it was left or

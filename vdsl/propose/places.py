@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -21,6 +22,10 @@ from .state import SceneState, floor_under, room_middle
 ARM = 0.75  # metres on the floor within which a hand reaches a thing
 TALKING = 0.88  # metres between two people face to face
 _ABREAST = 0.75  # metres between two people side by side
+_FACE_TO_FACE = (TALKING, TALKING + 0.15, TALKING + 0.35)
+#: Where to stand by somebody, from where they look: face to face, else aside; and at their sides.
+_AHEAD = (0.0, 0.35, -0.35, 0.7, -0.7, 1.1, -1.1, 1.6, -1.6, 2.2, -2.2, math.pi)
+_SIDES = (math.pi / 2, -math.pi / 2, 2.0, -2.0)
 _EYES = 0.93  # of the standing height
 _BESIDE = 0.16  # metres between things on a table top
 _AT_TABLE, _FACES = 0.75, 0.5  # metres from a seat to what it is drawn up to; how far it faces it, a cosine
@@ -386,20 +391,36 @@ def with_somebody(name: str, who: str, state: SceneState, beside: bool) -> Stop 
     """Face to face with somebody, or at their side and looking where they look, with no wall between; None
     where there is no room."""
     other, people = state.actors[name], state.people(but=who)
+
+    def near(goal: Point) -> bool:
+        return near_on_foot(state.world, other.position, goal)
+
+    if beside and (goal := _by_somebody(name, state, people, _SIDES, (_ABREAST,), near)) is not None:
+        return Stop(*goal[:2], other.heading, goal[2])
+    goal = _by_somebody(name, state, people, _AHEAD, _FACE_TO_FACE, near)
+    if goal is not None:
+        return Stop(*goal[:2], _towards(goal, other.position), goal[2])
+    return _before(name, state, people, None)
+
+
+def _by_somebody(
+    name: str,
+    state: SceneState,
+    people: Discs,
+    turns: tuple[float, ...],
+    aways: tuple[float, ...],
+    will_do: Callable[[Point], bool],
+) -> Point | None:
+    """The first free place by somebody, so far away and at such an angle from where they look."""
+    other = state.actors[name]
     x, y, z = other.position
-    ahead = (0.0, 0.35, -0.35, 0.7, -0.7, 1.1, -1.1, 1.6, -1.6, 2.2, -2.2, math.pi)
-    turns, aways = (
-        ((math.pi / 2, -math.pi / 2, 2.0, -2.0), (_ABREAST,)) if beside else (ahead, (TALKING, 1.1))
-    )
     for turn in turns:
         for far in aways:
             a = other.heading + turn
             goal = (x + far * math.cos(a), y + far * math.sin(a), z)
-            if _clear(state.world, goal, people) >= BODY_RADIUS and near_on_foot(
-                state.world, (x, y, z), goal
-            ):
-                return Stop(*goal[:2], other.heading if beside else _towards(goal, (x, y)), z)
-    return with_somebody(name, who, state, False) if beside else _before(name, state, people, None)
+            if _clear(state.world, goal, people) >= BODY_RADIUS and will_do(goal):
+                return goal
+    return None
 
 
 def near_on_foot(world: World, start: Point, goal: Point) -> bool:
@@ -411,14 +432,14 @@ def near_on_foot(world: World, start: Point, goal: Point) -> bool:
 def _before(name: str, state: SceneState, people: Discs, start: Place | None) -> Stop | None:
     """Face to face with somebody: in front of them, else as near to that as there is room."""
     other, world = state.actors[name], state.world
-    x, y, z = other.position
-    for turn in (0.0, 0.35, -0.35, 0.7, -0.7, 1.1, -1.1, 1.6, -1.6, 2.2, -2.2, math.pi):
-        for far in (TALKING, TALKING + 0.15, TALKING + 0.35):
-            a = other.heading + turn
-            goal = (x + far * math.cos(a), y + far * math.sin(a), z)
-            if _clear(world, goal, people) >= BODY_RADIUS and (
-                start is None or reachable(world, start, goal, people)
-            ):
-                return Stop(goal[0], goal[1], _towards(goal, (x, y)), z)
+
+    def joined(goal: Point) -> bool:
+        return start is None or reachable(world, start, goal, people)
+
+    goal = _by_somebody(name, state, people, _AHEAD, _FACE_TO_FACE, joined)
+    if goal is not None:
+        return Stop(goal[0], goal[1], _towards(goal, other.position), goal[2])
     found = nearest_free(world, other.position, people, within=1.6, start=start)
-    return None if found is None else Stop(found[0], found[1], _towards(found, (x, y)), found[2])
+    if found is None:
+        return None
+    return Stop(found[0], found[1], _towards(found, other.position), found[2])

@@ -58,12 +58,9 @@ def opening_state(
         state = SceneState(world, dict(actors), props, scene.room)
         actor = _placed(placed[name], state, report)
         facing = placed[name].facing
-        if (
-            actor is not None
-            and facing is not None
-            and (facing.kind != "character" or _is_in(facing, actors))
-        ):
-            actor = _facing(actor, facing, replace(state, actors={**actors, name: actor}))
+        here = facing is not None and (facing.kind != "character" or facing.path[0] in actors)
+        if actor is not None and facing is not None and here:  # who is placed by them goes by how they stand
+            actor = _facing(actor, facing, state)
         if actor is not None:
             actors[name] = actor
     for name in skeletons:
@@ -78,10 +75,6 @@ def opening_state(
     from .bringing import holding_at_first, lying_about
 
     return lying_about(scene, holding_at_first(scene, SceneState(world, ordered, props, scene.room)))
-
-
-def _is_in(target: Target, actors: Mapping[str, ActorState]) -> bool:
-    return target.path[0] in actors
 
 
 def _one_by_one(names: list[str], placed: Mapping[str, Placement]) -> list[str]:

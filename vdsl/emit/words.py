@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from ..lang.clauses import OWNERS, owner
 from ..lang.ir import Beat, Shot, StoryLine
 from ..lang.pronouns import ALL, BOTH, ONE
 
@@ -17,9 +18,12 @@ def beat_words(beat: Beat) -> str:
     said = beat.span.text.strip().removeprefix("(").removesuffix(")").split()
     if beat.who is not None:
         said = [*beat.who.text.split(), *said]
-    if said[0] in ONE:
+    first = said[0].removesuffix(",")
+    if first in ONE:
         return " ".join((beat.character, *said[1:]))
-    if said[0] in (beat.character, *BOTH, *ALL) or said[1:2] == ["and"]:
+    if first in OWNERS:
+        return " ".join((f"{beat.character}'s", *said[1:]))  # `her hands tremble`
+    if (owner(first) or first) in (beat.character, *BOTH, *ALL) or said[1:2] == ["and"]:
         return " ".join(said)
     words = [beat.character, beat.action]
     if beat.target is not None and not beat.target.implied:

@@ -11,7 +11,7 @@ from dataclasses import replace
 
 from runtime.motion.manner import MANNERS
 
-from . import ast, phrases, words
+from . import ast, clauses, phrases, words
 from .catalog import CatalogLike
 from .definitions.types import DefinitionBase
 from .diagnostics import Report, listing, nearest
@@ -111,6 +111,28 @@ class BeatReader:
                 return None
         return Beat(character, action, first, second, node.span, manner, who=node.who)
 
+    def lines(self, node: ast.StoryNode) -> tuple[ast.StoryNode, ...]:
+        """What a line says as lines in which everybody does one thing, ``while`` as at the same time."""
+        beats: list[ast.BeatNode] = []
+        besides: list[ast.BeatNode] = []
+        later: list[ast.BeatNode] = []
+        for beat in node.beats:
+            read = clauses.sentence(beat.words, self._known())
+            for part in read.left_out:
+                span = part[0].span.to(part[-1].span)
+                self.report.warn(
+                    "VDS082", span, label=f"`{span.text}` is left out", help="nothing of it would show"
+                )
+            first = replace(beat, words=read.words)
+            if read.besides:
+                first = replace(first, span=read.words[0].span.to(read.words[-1].span))
+                span = read.besides[0].span.to(read.besides[-1].span)
+                (later if read.later else besides).append(ast.BeatNode(read.besides, span))
+            beats.append(first)
+        *before, last = self.one_by_one(replace(node, beats=tuple(beats)))
+        after = [_filmed_alike(node, beat) for beat in later]
+        return (*before, replace(last, beats=(*last.beats, *besides)), *after)
+
     def one_by_one(self, node: ast.StoryNode) -> tuple[ast.StoryNode, ...]:
         """``(ben sits down and reads)`` as two lines, filmed alike; what is said of one is of the first."""
         if len(node.beats) != 1:
@@ -149,7 +171,15 @@ class BeatReader:
 
     def _known(self) -> phrases.Known:
         own = self.mentions.may_be_own
-        return phrases.Known(self.characters, self.mentions.meant, own, self._it, self._is_action)
+        return phrases.Known(
+            self.characters,
+            self.mentions.meant,
+            own,
+            self._it,
+            self._is_action,
+            self.targets.is_name,
+            self.mentions.may,
+        )
 
     def takes_somebody(self, action: str) -> bool:
         """Whether an action is nothing without somebody it is done to, and one will do: ``hug``."""

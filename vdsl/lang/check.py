@@ -14,6 +14,7 @@ from . import ast
 from .beats import BeatReader
 from .bringing import bring, bring_named, put_about
 from .catalog import CatalogLike
+from .clauses import owner
 from .diagnostics import Report
 from .files import used_scripts
 from .hands import Hands
@@ -262,7 +263,7 @@ class _Checker:
             if isinstance(statement, ast.PlacementLine):
                 placed[statement.character.text] = None
             elif isinstance(statement, ast.StoryNode):
-                named.update((w.text, None) for beat in statement.beats for w in beat.words)
+                named.update((owner(w.text) or w.text, None) for beat in statement.beats for w in beat.words)
         known = {*self.characters, *self._later_characters(index)}
         return tuple(name for name in {**placed, **named} if name in known)
 
@@ -310,7 +311,7 @@ class _Checker:
             stage.reader.targets.put_about = lambda word, span, who: put_about(
                 word, span, who, stage, self.catalog, self.report
             )
-        for line in stage.reader.one_by_one(node):
+        for line in stage.reader.lines(node):
             self._line(line, stage, stage.reader)
 
     def _line(self, node: ast.StoryNode, stage: SceneBeingRead, reader: BeatReader) -> None:

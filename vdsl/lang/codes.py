@@ -27,8 +27,8 @@ CODES: dict[str, Code] = {
         "this line does not read",
         "A line of a script is one statement, and this one has something that has no place in its kind of "
         "statement, or ends too early. The message shows what such a line looks like.",
-        "(anna walk, counter)",
-        "(anna walk counter)",
+        "(anna walk counter) lens = 50mm",
+        "(anna walk counter) lens 50mm",
     ),
     "VDS002": Code(
         "parenthesis without its partner",

@@ -16,6 +16,10 @@ from .words import ARTICLES, PREPOSITIONS, WHERE, plain_forms
 
 #: Before a verb, by itself or with ``to``, they say that it begins or goes on.
 AUXILIARIES = ("is", "are", "start", "begin", "try", "continue", "keep", "proceed", "pretend")
+#: With ``to`` before another verb they say no more than that who acts is about to.
+_TOWARDS = (
+    "come", "decide", "go", "hurry", "lean", "manage", "reach", "rush", "stop", "turn", "walk", "bend", "run",
+)  # fmt: skip
 #: After a verb, or at the end: a direction, where no name follows.
 PARTICLES = (
     "in",
@@ -32,6 +36,14 @@ PARTICLES = (
     "around",
     "apart",
 )
+#: The same at the end alone: `peeks inside`.
+_NO_MORE = ("above", "across", "behind", "below", "by", "inside", "outside", "through", "under")
+#: Several words that say how, and never what.
+_SAID_HOW = (
+    "up and down", "back and forth", "to and fro", "round and round", "over and over", "hand in hand",
+    "arm in arm", "side by side", "face to face", "out loud", "at once", "in a row", "in row", "by and by",
+    "in time", "on time", "as usual", "no more", "in vain", "on purpose", "by accident", "one by one",
+)  # fmt: skip
 #: They say when, or how often; never what.
 ADVERBS = (
     "again", "suddenly", "then", "finally", "together", "back", "still", "now", "just", "too",
@@ -99,7 +111,7 @@ _MEASURES = (
     "stack",
 )
 #: Parts of a body: an action knows which it needs.
-_BODY = {
+BODY = {
     "head", "face", "eyes", "eye", "ears", "nose", "mouth", "lips", "cheek", "cheeks", "chin", "forehead",
     "hair", "lip", "ear", "throat", "tongue", "teeth", "brow", "waist", "hip", "hips", "thigh", "toe", "toes",
     "heel", "heels", "thumb", "palm", "palms", "sleeve", "collar", "pocket", "pockets", "neck", "shoulder",
@@ -130,7 +142,8 @@ class Known:
 
     named: people of the storyboard; them: who, besides the one who acts, a pronoun means, or ""; own: whether
     it may mean who acts; it: the parts of the name of what was spoken of last, or (); is_action: whether all
-    of some words name an action
+    of some words name an action; is_name: whether a word is somebody's or something's in the scene; may_be:
+    whether a pronoun may mean somebody
     """
 
     named: Sequence[str]
@@ -138,11 +151,14 @@ class Known:
     own: Callable[[str], bool]
     it: tuple[str, ...]
     is_action: Callable[[Words], bool]
+    is_name: Callable[[ast.Name], bool]
+    may_be: Callable[[str, str], bool]
 
 
 def plain(said: Words, known: Known) -> Words:
     """The words of a beat without those that say nothing, with all words of a verb side by side."""
-    character, rest = said[:1], _without(_with_names(said[1:], known), known.named)
+    character, rest = said[:1], _without(_with_names(_without_how(said[1:], known), known), known.named)
+    rest = about_to(rest, known.is_action, known.is_name) or rest
     rest = _one_each(_without_auxiliary(rest, known.is_action), known.is_action)
     while len(rest) > 1 and rest[-1].text in ADVERBS and rest[-1].text not in (*PARTICLES, *known.named):
         if rest[-2].text in PREPOSITIONS and rest[-2].text not in PARTICLES:  # `to herself`
@@ -195,33 +211,37 @@ def one_after_the_other(
     while at + 1 < len(said) and said[at].text == "and":
         at += 2
     who, rest = said[:at], said[at:]
-    verb = next((word for word in rest if not _says_how(word)), None)
+    verb = next((word for word in rest if not says_how(word)), None)
     third = verb is not None and _is_third(verb)
 
     def begins(k: int) -> int | None:
         """Where a verb in the form of the first one stands after the ``and`` at ``k``."""
         at = k + 1
-        while at + 1 < len(rest) and _says_how(rest[at]):
+        while at + 1 < len(rest) and says_how(rest[at]):
             at += 1
         after = rest[at:]
-        if not after or is_name(after[0]) or third != _is_third(after[0]):
+        alike = third == _is_third(after[0]) or rest[k].span.text != "and" if after else False
+        if not alike or is_name(after[0]):
             return None
         if any(is_action(rest[: at + size]) for size in (1, 2) if at + size <= len(rest)):
             return None  # `trips and falls` is one action
-        object_before = k > 1 and rest[k - 1].text not in PARTICLES and not _says_how(rest[k - 1])
+        object_before = k > 1 and rest[k - 1].text not in PARTICLES and not says_how(rest[k - 1])
         if (
             object_before
             and len(after) == 1
             and any(is_thing(word) for word in (*after, *of_several(after[0])))
         ):
             return None  # `the hat and box`
-        after = _without_auxiliary(after, is_action)
+        after = _without_auxiliary(tuple(w for w in after if w.text not in ARTICLES) or after, is_action)
         apart = any(is_action((after[0], word)) for word in after[1:4] if word.text in PARTICLES)
         known = apart or any(is_action(after[:size]) for size in range(1, min(3, len(after)) + 1))
         return at if known else None
 
     cuts = [
-        (k, verb_at) for k, word in enumerate(rest) if k and word.text == "and" and (verb_at := begins(k))
+        (k, verb_at)
+        for k, word in enumerate(rest)
+        if k and (word.text == "and" or (word.text == "then" and rest[k - 1].text != "and"))
+        if (verb_at := begins(k))
     ]
     ends = zip([0, *(verb_at for _, verb_at in cuts)], [*(k for k, _ in cuts), len(rest)], strict=True)
     return who, tuple(rest[begin:end] for begin, end in ends)
@@ -255,7 +275,7 @@ def targets_alone(rest: Words, is_name: Callable[[ast.Name], bool]) -> Words:
         if begins != () and is_name(group[0]):
             begins = ()
         kept = (*kept, *_target_of(begins, group[len(begins) :], bool(kept), is_name))
-    while kept and kept[-1].text in PARTICLES and not is_name(kept[-1]):
+    while kept and kept[-1].text in (*PARTICLES, *_NO_MORE) and not is_name(kept[-1]):
         kept = kept[:-1]
     return kept
 
@@ -268,23 +288,23 @@ def _target_of(begins: Words, said: Words, later: bool, is_name: Callable[[ast.N
     if begins and later and begins[0].text == "of":  # `a glass of water` is a glass
         return (*begins, *names) if (names := tuple(w for w in said if is_name(w))) else ()
     words = said
-    while len(words) > (1 if begins else 0) and _says_how(words[-1]) and not is_name(words[-1]):
-        if words[-1].text in _BODY:
+    while len(words) > (1 if begins else 0) and says_how(words[-1]) and not is_name(words[-1]):
+        if words[-1].text in BODY:
             break
         words = words[:-1]
     named = any(is_name(word) for word in words)
     if not named and words and words[-1].text in _HOW and not begins:  # `the letter one last time`
-        while words and (words[-1].text in _HOW or _says_how(words[-1])):
+        while words and (words[-1].text in _HOW or says_how(words[-1])):
             words = words[:-1]
         return words
-    if not named and words and (words[-1].text in (*_BODY, *_HOW, *_EVERYWHERE) or words[-1].text in ADVERBS):
+    if not named and words and (words[-1].text in (*BODY, *_HOW, *_EVERYWHERE) or words[-1].text in ADVERBS):
         return ()  # `greasy hands`, `with a heavy sigh`, `to herself`
-    words = tuple(w for w in words if is_name(w) or w.text in _COUNTING or not _says_how(w))
-    words = tuple(word for word in words if is_name(word) or word.text not in (*_BODY, *_HOW, *_EVERYWHERE))
+    words = tuple(w for w in words if is_name(w) or w.text in _COUNTING or not says_how(w))
+    words = tuple(word for word in words if is_name(word) or word.text not in (*BODY, *_HOW, *_EVERYWHERE))
     return (*begins, *words) if words else ()
 
 
-def _says_how(word: ast.Name) -> bool:
+def says_how(word: ast.Name) -> bool:
     return word.text in ADVERBS or _is_adverb(word.text)
 
 
@@ -309,12 +329,12 @@ def first_is_of_a_body(rest: Words, is_name: Callable[[ast.Name], bool]) -> bool
         if word.text in PREPOSITIONS:
             break
         first = (*first, word)
-    return first != () and first[-1].text in _BODY and not any(is_name(word) for word in first)
+    return first != () and first[-1].text in BODY and not any(is_name(word) for word in first)
 
 
 def only_how(rest: Words) -> bool:
     """Whether words say how something is done and nothing else."""
-    return rest != () and all(word.text in _HOW or _says_how(word) for word in rest)
+    return rest != () and all(word.text in _HOW or says_how(word) for word in rest)
 
 
 def without_walls(rest: Words, is_name: Callable[[ast.Name], bool]) -> Words:
@@ -344,7 +364,7 @@ def _with_names(said: Words, known: Known, each_other: bool = True) -> Words:
         if word.text in _OBJECTS and (word.text != "her" or ends) and known.them(word.text):
             meant = (known.them(word.text),)
         behind = ends and not meant and out != [] and out[-1].text in WHERE and known.own(word.text)
-        if word.text in _OBJECTS and behind and (n + 1 == len(said) or said[n + 1].text not in _BODY):
+        if word.text in _OBJECTS and behind and (n + 1 == len(said) or said[n + 1].text not in BODY):
             out.pop()  # `behind her`, where she is who acts
             continue
         out.append(ast.Name(meant, word.span) if meant and word.text not in known.named else word)
@@ -357,12 +377,12 @@ def _verb_first(rest: Words, known: Known) -> Words:
     if len(rest) < 3 or known.is_action(rest[:2]):
         return rest
     verb, first, *others, last = rest
-    worn = last.text in _WORN_ON and others[-1:] != [] and others[-1].text == "on" and first.text not in _BODY
+    worn = last.text in _WORN_ON and others[-1:] != [] and others[-1].text == "on" and first.text not in BODY
     if worn and known.is_action((verb, others[-1])):  # `puts the hat on her head`
         return (verb, others[-1], first, *others[:-1])
     if last.text in PARTICLES and known.is_action((verb, last)):
         return (verb, last, first, *others)
-    if last.text in _BODY and known.is_action((verb, last)) and first.text not in known.named:
+    if last.text in BODY and known.is_action((verb, last)) and first.text not in known.named:
         return (verb, last)  # `wash greasy hands`
     by = not others or (len(others) == 1 and others[0].text in PREPOSITIONS)
     if first.text in known.named and by and known.is_action((verb, last)):
@@ -393,6 +413,23 @@ def _without(said: Words, named: Sequence[str]) -> Words:
     return tuple(word for word in said if word.text not in ARTICLES or word.text in named)
 
 
+def _without_how(rest: Words, known: Known) -> Words:
+    """Without ``up and down`` and ``hand in hand``, where these are no part of an action."""
+    out: Words = ()
+    while rest:
+        sizes = [len(said) for how in _SAID_HOW if _texts(rest[: len(said := how.split())]) == said]
+        size = max(sizes, default=0)
+        if out and size and not known.is_action((*out, *rest[:size])):
+            rest = rest[size:]
+        else:
+            out, rest = (*out, rest[0]), rest[1:]
+    return out
+
+
+def _texts(said: Words) -> list[str]:
+    return [word.text for word in said]
+
+
 def _without_auxiliary(rest: Words, is_action: Callable[[Words], bool]) -> Words:
     """``cry`` of ``starts to cry`` and of ``is crying``."""
     if not rest or not {rest[0].text, *plain_forms(rest[0].text)} & {*AUXILIARIES}:
@@ -400,6 +437,21 @@ def _without_auxiliary(rest: Words, is_action: Callable[[Words], bool]) -> Words
     after = rest[2:] if len(rest) > 2 and rest[1].text == "to" else rest[1:]
     begins_one = any(is_action(after[:size]) for size in range(1, min(4, len(after)) + 1))
     return after if begins_one else rest
+
+
+def about_to(rest: Words, is_action: Callable[[Words], bool], is_name: Callable[[ast.Name], bool]) -> Words:
+    """``kiss anna`` of ``leans in to kiss anna``, ``()`` of other words: what somebody goes to do."""
+    if not rest or not {rest[0].text, *plain_forms(rest[0].text)} & {*_TOWARDS}:
+        return ()
+    at = 1
+    while at < len(rest) and rest[at].text in PARTICLES:
+        at += 1
+    after = rest[at + 1 :]
+    if rest[at : at + 1] == () or rest[at].text != "to" or not after or is_name(after[0]):
+        return ()
+    if is_action(rest[: at + 2]):  # `goes to sleep`
+        return ()
+    return after if any(is_action(after[:size]) for size in range(1, min(4, len(after)) + 1)) else ()
 
 
 def _one_each(rest: Words, is_action: Callable[[Words], bool]) -> Words:

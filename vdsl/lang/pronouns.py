@@ -49,7 +49,7 @@ class Mentions:
     def who_acts(self, pronoun: str) -> str:
         """Who acts by ``he`` or ``she``: who acted last of those it may mean, else who was spoken of last,
         else the only one it may mean; "" for nobody."""
-        may = [name for name in self.about if self._may(pronoun, name)]
+        may = [name for name in self.about if self.may(pronoun, name)]
         last = next((name for name in (*self._acted, *self._spoken_of) if name in may), "")
         return last or (may[0] if len(may) == 1 else "")
 
@@ -69,7 +69,7 @@ class Mentions:
         if self.partner and not pronoun:
             return self.partner
         others = [name for name in self.about if name != self.who and name not in self.acting]
-        may = [name for name in others if self._may(pronoun, name)]
+        may = [name for name in others if self.may(pronoun, name)]
         last = next((name for name in self._spoken_of if name in may), "")
         return may[0] if len(may) == 1 else last
 
@@ -82,8 +82,9 @@ class Mentions:
 
     def may_be_own(self, pronoun: str) -> bool:
         """Whether a word may mean who acts."""
-        return pronoun in _BODIES and self.who is not None and self._may(pronoun, self.who)
+        return pronoun in _BODIES and self.who is not None and self.may(pronoun, self.who)
 
-    def _may(self, pronoun: str, name: str) -> bool:
+    def may(self, pronoun: str, name: str) -> bool:
+        """Whether a word may mean somebody."""
         body = _BODIES.get(pronoun, "")
         return not body or self.bodies.get(name, body) == body

@@ -71,8 +71,6 @@ RULES: tuple[Rule, ...] = (
     Rule("(anna walk) lens: 50mm", ":", (), r"(?<![\d ])(:)", "no colon here", "a name and its value stand side by side", ""),
     # story lines
     Rule("()", "()", ("story",), r"(\(\s*\))(?=[^)]*$)", "nobody does anything here", "as in `(anna walk door)`"),
-    Rule("(anna walk, counter)", ",", ("story",), r"^[^)]*\([^)]*(,)", "no commas between the words of an action",
-         "as in `(anna give cup to ben)`", ""),
     Rule('(anna say "Hello.")', '"Hello."', ("story",), r'^\([^)]*("[^"]*")', "no text inside the parentheses",
          'what is said stands after them: `(anna talk ben) say "Hello."`'),
     Rule("(anna walk 3 steps)", "3", ("story",), r"^\([^)/]*?\s(\d[\w.]*)", "no numbers inside the parentheses",

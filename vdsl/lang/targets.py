@@ -84,8 +84,14 @@ class TargetReader:
         """Without where it is done, where an action takes no more targets: `peeks at her over the paper`."""
         takes = [getattr(definition, name, "none") != "none" for name in ("target", "second")]
         most = 2 if takes[1] else int(takes[0])
-        before = {id(word): last for last, word in pairwise(said) if last.text in words.WHERE}
-        while len(groups) > most and id(groups[-1][0]) in before:
+        where = (*words.WHERE, *words.BESIDES)
+        before = {id(word): last for last, word in pairwise(said) if last.text in where}
+        while groups and id(groups[-1][0]) in before:
+            link = before[id(groups[-1][0])].text
+            loose = link in words.BESIDES and self._is_nothing(groups[-1])
+            loose = loose or (link in words.WHERE and self._is_wrongly_somebody(groups, definition))
+            if not loose and (len(groups) <= most or link == "with"):
+                break
             *groups, last = groups
             span = before[id(last[0])].span.to(last[-1].span)
             self.report.warn(
@@ -95,6 +101,21 @@ class TargetReader:
                 help=f"`{getattr(definition, 'name', 'it')}` is done to no more",
             )
         return groups
+
+    def _is_wrongly_somebody(self, groups: list[list[ast.Name]], definition: DefinitionBase) -> bool:
+        """Whether the only target is somebody, to whom an action is not done: `sleeps beside anna`."""
+        kinds, _ = _kinds(definition)
+        wants = getattr(definition, "target", "none")
+        alone = len(groups) == 1 and len(groups[0]) == 1 and groups[0][0].text in self.characters
+        return alone and wants == "optional" and bool(kinds) and "character" not in kinds
+
+    def _is_nothing(self, group: list[ast.Name]) -> bool:
+        """Whether words name nothing in the scene or in the library, nor nearly."""
+        for last in (group[-1], *phrases.of_several(group[-1])):
+            said = [*group[:-1], last]
+            if any(self._known(said[k:], True) for k in range(len(said))):
+                return False
+        return not self._is_like_something(group)
 
     def _is_given_to(self, word: ast.Name, definition: DefinitionBase) -> bool:
         """Whether somebody named before a thing is whom it is given to, shown to, thrown to."""

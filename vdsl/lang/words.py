@@ -191,6 +191,8 @@ WHERE = (
     "in", "on", "through", "against", "beside", "near", "by", "behind", "before", "under", "over", "around",
     "across", "opposite", "past", "along", "inside", "between", "above", "below",
 )  # fmt: skip
+#: What they begin is hardly ever what is done, but whence, why or by what.
+BESIDES = ("from", "for", "about", "of", "with")
 #: Words before a name that say nothing here: articles, and whose it is.
 ARTICLES = ("the", "a", "an", "some", "her", "his", "their", "its", "my", "your", "our")
 

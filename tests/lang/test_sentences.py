@@ -1,0 +1,135 @@
+"""Lines of several clauses, commas and possessives: what of it is done, by whom, when, and what is left out."""
+
+from __future__ import annotations
+
+import pytest
+from test_as_people_say_it import read, told
+
+from vdsl.emit.words import line_words
+
+
+def done(line: str, place: str = "apartment") -> list[list[tuple[str, str, str]]]:
+    """Of every line that a line is read as: who does what, to what."""
+    board, report = read(line, place)
+    assert board is not None, [d.label for d in report.errors]
+    return [[(b.character, *told(b)[:2]) for b in each.beats] for each in board.lines]
+
+
+@pytest.mark.parametrize(
+    ("line", "expected"),
+    [
+        ("(ben reads while anna cooks)", [("ben", "read", ""), ("anna", "cook", "stove")]),
+        ("(ben cooks as she walks in)", [("ben", "cook", "stove"), ("anna", "enter", "middle")]),
+        ("(ben sits down and anna stands up)", [("ben", "sit", ""), ("anna", "stand-up", "")]),
+        ("(anna waves, ben nods)", [("anna", "wave", ""), ("ben", "nod", "")]),
+        ("(anna, ben wave)", [("anna", "wave", ""), ("ben", "wave", "")]),
+        ("(anna and ben dance while they laugh)", [("anna", "dance", ""), ("ben", "dance", "")]),
+        ("(ben cooks dinner while he talks)", [("ben", "cook", "stove")]),  # nobody does two things at once
+    ],
+)
+def test_what_others_do_meanwhile(line: str, expected: list[tuple[str, str, str]]) -> None:
+    assert done(line) == [expected]
+
+
+@pytest.mark.parametrize(
+    ("line", "expected"),
+    [
+        ("(anna sits down, opens the fridge and yawns)", ["sit", "open", "yawn"]),
+        ("(anna sits down, sighs, and looks up)", ["sit", "sigh", "look-up"]),
+        ("(anna sits on the sofa watching the tv)", ["sit", "look"]),
+        ("(ben puts the cup on the table, smiling)", ["put-down", "smile"]),
+        ("(anna looks around before sitting down)", ["look-around", "sit"]),
+        ("(ben yawns then sits down)", ["yawn", "sit"]),
+        ("(ben sits down and rolls his eyes)", ["sit", "frown"]),
+        ("(ben walks over and, without a word, hugs anna)", ["walk", "hug"]),
+        ("(anna and ben sit down and start to laugh)", ["sit", "laugh"]),
+    ],
+)
+def test_what_is_done_one_after_the_other(line: str, expected: list[str]) -> None:
+    assert [beats[0][1] for beats in done(line)] == expected
+
+
+def test_then_somebody_else_does_it() -> None:
+    for line in ("(ben sits down, then anna sits down)", "(ben sits down and then anna sits down)"):
+        assert done(line) == [[("ben", "sit", "")], [("anna", "sit", "")]], line
+
+
+@pytest.mark.parametrize(
+    ("line", "expected", "left"),
+    [
+        ("(ben sits on the sofa because he is tired)", ("ben", "sit", "sofa"), "because he is tired"),
+        ("(ben dances like a robot)", ("ben", "dance", ""), "like a robot"),
+        ("(anna walks in, out of breath)", ("anna", "enter", "middle"), "out of breath"),
+        ("(anna, annoyed, rolls her eyes)", ("anna", "frown", ""), "annoyed"),
+        ("(anna waits for the bus)", ("anna", "wait", ""), "for the bus"),
+        ("(anna looks at ben without a word)", ("anna", "look", "ben"), "without a word"),
+        ("(anna begs ben to put it away)", ("anna", "beg", "ben"), "to put it away"),
+        ("(anna opens the door for ben)", ("anna", "open", "door"), "for ben"),
+        ("(anna sleeps next to ben)", ("anna", "sleep", ""), "next to ben"),
+    ],
+)
+def test_what_does_not_show_is_left_out_with_a_warning(
+    line: str, expected: tuple[str, str, str], left: str
+) -> None:
+    board, report = read(line)
+    assert board is not None, [d.label for d in report.errors]
+    beat = board.lines[0].beats[0]
+    assert (beat.character, *told(beat)[:2]) == expected
+    assert [d.span.text for d in report.diagnostics if d.code == "VDS082"] == [left]
+
+
+@pytest.mark.parametrize(
+    ("line", "expected"),
+    [
+        ("(anna takes ben's hand)", ("anna", "hold-hands", "ben")),
+        ("(anna kisses ben's cheek)", ("anna", "kiss", "ben")),
+        ("(anna picks up ben’s cup)", ("anna", "pick-up", "cup")),
+        ("(anna's hands tremble)", ("anna", "tremble", "")),
+        ("(her hands tremble)", ("anna", "tremble", "")),
+        ("(ben opens the fridge's door)", ("ben", "open", "door")),
+        ("(ben leans in to kiss anna)", ("ben", "kiss", "anna")),
+        ("(anna turns to look at ben)", ("anna", "look", "ben")),
+        ("(anna goes to sleep)", ("anna", "sleep", "")),
+        ("(ben paces up and down)", ("ben", "pace", "")),
+        ("(anna peeks inside)", ("anna", "peek", "")),
+        ("(anna walk, counter)", ("anna", "walk", "counter")),
+    ],
+)
+def test_whose_it_is_and_what_somebody_is_about_to_do(line: str, expected: tuple[str, str, str]) -> None:
+    assert done(line) == [[expected]]
+
+
+def test_what_somebody_carries_is_theirs() -> None:
+    """With two such things about, a possessive says which."""
+    board, report = read("(anna plays guitar)\n(ben plays guitar)\n(anna picks up ben's guitar)")
+    assert board is not None, report.errors
+    assert board.lines[-1].beats[0].target is not None
+    assert board.lines[-1].beats[0].target.path == ("ben", "guitar")
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        "(anna looks at bne's cup)",
+        "(anna walks to the dore because it rings)",  # a slip of the finger in what is done
+        "(anna picks up the cupp from ben)",
+        "(anna waves at bne)",
+        "(anna, ben)",
+    ],
+)
+def test_slips_of_the_finger_are_errors_all_the_same(line: str) -> None:
+    board, report = read(line)
+    assert report.errors, board
+
+
+def test_each_part_is_told_in_its_own_words() -> None:
+    told_as = {
+        "(ben reads while anna cooks)": ["ben reads + anna cooks"],
+        "(ben sits down, then anna sits down)": ["ben sits down", "anna sits down"],
+        "(her hands tremble)": ["anna's hands tremble"],
+        "(anna, annoyed, rolls her eyes)": ["anna, annoyed, rolls her eyes"],
+    }
+    for line, expected in told_as.items():
+        board, report = read(line)
+        assert board is not None, report.errors
+        assert [line_words(each, "") for each in board.lines] == expected

@@ -72,6 +72,7 @@ PROPS = {
     "counter": ("top", "stand"),
     "chair": ("seat", "stand"),
     "cup": ("grip",),
+    "stand_in": ("grip",),
     "sofa": ("seat_left", "seat_right", "stand"),
     "lamp": (),
     "bench": ("seat",),
@@ -138,7 +139,7 @@ class SmallCatalog:
     def __init__(self) -> None:
         self._all: dict[tuple[str, str], DefinitionBase] = {}
         for name, spots in PROPS.items():
-            self._all["prop", name] = Prop(name, (), NOWHERE, spots, movable=name == "cup")
+            self._all["prop", name] = Prop(name, (), NOWHERE, spots, movable=name in ("cup", "stand_in"))
         for root in (APARTMENT, STREET):
             self._all["set", root.name] = Set(root.name, (), NOWHERE, root)
         for name, (target, kinds, second) in ACTIONS.items():

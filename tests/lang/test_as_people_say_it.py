@@ -293,7 +293,6 @@ def test_they_all_do_both() -> None:
         "(ben takes a punch from anna)",  # who takes one does not hit
         "(anna carries bags and boxes)",
         "(anna slowly picks up the cup and box)",
-        "(anna enters with a bucket)",  # nothing to walk to
         "(ben sits on the stone)",
     ],
 )
@@ -436,7 +435,6 @@ def test_what_a_thing_is_like_and_how_something_is_done_is_left_out() -> None:
     for line, code in (
         ("(anna pours cup table)", "VDS073"),  # two names, and no word for what the table is like
         ("(anna picks up the cup to the table)", "VDS073"),  # that would be seen
-        ("(anna looks at the blue unicorn)", "VDS073"),
     ):
         board, report = read(line)
         assert board is None
@@ -484,7 +482,6 @@ def test_what_is_no_adverb_and_no_adjective_is_told() -> None:
         ("(anna walks to emily)", "VDS060"),
         ("(anna shows bne the cup)", "VDS073"),
         ("(anna puts her hand on his shoulder)", "VDS072"),
-        ("(anna opens her eyes)", "VDS072"),
         ("(ben pats his pockets)", "VDS072"),
     ):
         board, report = read("(ben waves)\n" + line)

@@ -1,4 +1,4 @@
-"""Lines of several clauses, commas and possessives: what of it is done, by whom, when, and what is left out."""
+"""Lines of several clauses, commas and possessives: what is done, by whom and when, and what is left out."""
 
 from __future__ import annotations
 
@@ -22,6 +22,7 @@ def done(line: str, place: str = "apartment") -> list[list[tuple[str, str, str]]
         ("(ben cooks as she walks in)", [("ben", "cook", "stove"), ("anna", "enter", "middle")]),
         ("(ben sits down and anna stands up)", [("ben", "sit", ""), ("anna", "stand-up", "")]),
         ("(anna waves, ben nods)", [("anna", "wave", ""), ("ben", "nod", "")]),
+        ("(anna sits down, and ben, annoyed, yawns)", [("anna", "sit", ""), ("ben", "yawn", "")]),
         ("(anna, ben wave)", [("anna", "wave", ""), ("ben", "wave", "")]),
         ("(anna and ben dance while they laugh)", [("anna", "dance", ""), ("ben", "dance", "")]),
         ("(ben cooks dinner while he talks)", [("ben", "cook", "stove")]),  # nobody does two things at once
@@ -117,6 +118,73 @@ def test_what_somebody_carries_is_theirs() -> None:
         "(anna, ben)",
     ],
 )
+def test_who_goes_sits_or_stands_with_something_has_it_in_hand() -> None:
+    for line, action in (
+        ("(anna walks in with a heavy bucket)", "enter"),
+        ("(anna sits down on the sofa with a book)", "sit"),
+        ("(anna hurries in with a pile of books under her arm)", "hurry"),
+    ):
+        board, report = read(line)
+        assert board is not None, report.errors
+        beat = board.lines[0].beats[0]
+        assert (beat.action, beat.brought and beat.brought.path[0]) == (action, "anna"), line
+    board, _ = read("(anna walks in with the newspaper)")  # which lies on the table
+    assert board is None
+
+
+def test_what_no_prop_is_called_is_a_box() -> None:
+    board, report = read("(anna picks up the harp)\n(anna gives her old harp to ben)\n(he drops it)")
+    assert board is not None, report.errors
+    assert [(thing.name, thing.prop) for thing in board.scenes[0].carried] == [("harp", "stand_in")]
+    assert [(d.code, d.span.text) for d in report.diagnostics] == [("VDS084", "harp")]
+    assert board.lines[2].beats[0].target == board.lines[1].beats[0].target
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        "(anna picks up the guittar)",  # a slip of the finger
+        "(anna picks up the phnoe)",
+        "(anna pick up harp)",  # no sentence: names are what the set has
+        "(anna sits on the throne)",
+        "(anna opens the trunk)",  # what is opened has to be there
+        "(anna picks up the wall)",
+        "(anna gives the cup to a stranger)",
+    ],
+)
+def test_what_gets_no_box(line: str) -> None:
+    board, report = read(line)
+    assert board is None
+    assert not [d for d in report.diagnostics if d.code == "VDS084"]
+
+
+def test_pronouns_of_one_sentence() -> None:
+    assert done("(anna takes some flowers and gives them to ben)")[1] == [("anna", "give", "flowers")]
+    assert done("(ben waves)\n(she and ben laugh)")[1] == [("anna", "laugh", ""), ("ben", "laugh", "")]
+    assert done("(ben nods and they walk away)")[1:] == [[("anna", "walk", ""), ("ben", "walk", "")]]
+    assert done("(ben helps anna sit down)") == [[("ben", "help-up", "anna")]]
+    assert done("(ben grabs her by the collar)") == [[("ben", "grip", "anna")]]
+    assert done("(anna pours him a drink)")[0][0][:2] == ("anna", "pour")
+
+
+@pytest.mark.parametrize(
+    ("line", "expected"),
+    [
+        ("(while anna cooks, ben reads)", [[("ben", "read", ""), ("anna", "cook", "stove")]]),
+        ("(when anna walks in, ben stands up)", [[("anna", "enter", "middle")], [("ben", "stand-up", "")]]),
+        ("(after dinner, ben reads)", [[("ben", "read", "")]]),
+        ("(suddenly ben jumps up)", [[("ben", "stand-up", "")]]),
+    ],
+)
+def test_what_stands_before_who_acts(line: str, expected: list[list[tuple[str, str, str]]]) -> None:
+    assert done(line) == expected
+
+
+def test_an_unknown_verb_after_and_is_told_by_itself() -> None:
+    _, report = read("(anna sits down and frobnicates the door)")
+    assert [(d.code, d.span.text) for d in report.errors] == [("VDS071", "frobnicates")]
+
+
 def test_slips_of_the_finger_are_errors_all_the_same(line: str) -> None:
     board, report = read(line)
     assert report.errors, board

@@ -48,6 +48,7 @@ class BeatReader:
         self.targets = TargetReader(catalog, characters, scope, report)
         self.mentions = mentions or Mentions(characters)
         self._it: tuple[str, ...] = ()  # the name of the thing that was spoken of last
+        self._many = False  # whether it was several, so that `them` may be it
         self._actions = {words.fold(word): name for word, name in catalog.synonyms("action").items()}
         self._actions |= {words.fold(name): name for name in catalog.names("action")}
 
@@ -55,6 +56,7 @@ class BeatReader:
         character, mentions = self._character(node), self.mentions
         mentions.who = self.targets.who = character
         self.targets.said = node.words
+        self.targets.prose = _is_prose(node.words)
         node, manner = self._manner(node)
         possessed = next((w.text for w in node.words if w.text in ("her", "his", "their")), "")
         spoken_of = mentions.meant(possessed)
@@ -69,37 +71,36 @@ class BeatReader:
             )
             return None
         action, used = self._action(node)
-        if action is None:
+        definition = None if action is None else self.catalog.get("action", action)
+        if action is None or definition is None:
             return None
-        definition = self.catalog.get("action", action)
-        of_body = phrases.first_is_of_a_body(node.words[1 + used :], self.targets.is_name)
+        if mentions.may_be_own(possessed) and self._is_of_a_body(node, used):
+            spoken_of = ""  # `strokes his chin`
         rest = phrases.targets_alone(node.words[1 + used :], self.targets.is_name)
         if getattr(definition, "against", 0.0):
             rest = phrases.without_walls(rest, self.targets.is_name)
-        named = None if definition is None else self.targets.named(rest, definition, node.words[used])
-        link = next((w.text for w in rest[1:] if w.text in words.PREPOSITIONS), "")
-        if definition is None or named is None or character is None:
+        rest, in_hand = self.targets.in_hand(rest, definition)
+        named = self.targets.named(rest, definition, node.words[used])
+        if named is None or character is None:
             return None
-        action, definition = self._done_to(action, definition, named)
-        if of_body and mentions.may_be_own(possessed):
-            spoken_of = ""  # `strokes his chin`
-        if of_body and not rest and getattr(definition, "needs", "none") != "none":
-            body = " ".join(word.text for word in node.words[1 + used :])
-            self.report.error(
-                "VDS072", node.span, label=f"`{action}` is done with a thing, not with `{body}`"
-            )
-            return None
-        if not named and self.scope is not None and not of_body:
-            unsaid = (self.scope.first(word, node.span) for word in getattr(definition, "otherwise", ()))
-            named = [target for target in unsaid if target is not None][:1]
+        if used == 1:  # `grabs ben`, and not `picks up ben`
+            action, definition = self._done_to(action, definition, named)
         whom = spoken_of if possessed else mentions.other()
+        found = self._unsaid(node, used, definition, rest, named, whom if possessed else "")
+        if found is None:
+            return None
+        action, definition = self._done_to(action, definition, found) if used == 1 else (action, definition)
+        named = found
         if not named and whom and self.takes_somebody(action):
             named = [Target("character", (whom,), whom, node.span, implied=True)]
-        things = (t for t in named if t.kind == "object" and not t.implied)
-        self._it = next((tuple(t.written.split(".")) for t in things), self._it)
+        thing = next((t for t in named if t.kind == "object" and not t.implied), in_hand)
+        if thing is not None:
+            self._it = tuple(thing.written.split("."))
+            self._many = thing.written.endswith("s") or thing.span.text.endswith("s")
         only_second = _is_second(definition, named)
         if not only_second and not self.targets.fits(node, action, definition, named):
             return None
+        link = next((w.text for w in rest[1:] if w.text in words.PREPOSITIONS), "")
         if len(named) == 2 and link in _INTO and getattr(definition, "needs", "none") == "second":
             named = [named[1], named[0]]
         first, second = (*named, None, None)[:2]
@@ -109,7 +110,37 @@ class BeatReader:
             if target.kind == "character" and target.path[0] == character:
                 self.report.error("VDS075", target.span, label=f"{character} cannot do this to themselves")
                 return None
-        return Beat(character, action, first, second, node.span, manner, who=node.who)
+        return Beat(character, action, first, second, node.span, manner, in_hand, who=node.who)
+
+    def _is_of_a_body(self, node: ast.BeatNode, used: int) -> bool:
+        """Whether what is done is done to a part of a body."""
+        return phrases.first_is_of_a_body(node.words[1 + used :], self.targets.is_name)
+
+    def _unsaid(
+        self,
+        node: ast.BeatNode,
+        used: int,
+        definition: DefinitionBase,
+        rest: tuple[ast.Name, ...],
+        named: list[Target],
+        whose: str,
+    ) -> list[Target] | None:
+        """The targets, or where none is named what goes without saying; None where it was reported that there
+        is nothing. whose: whose it is, besides who acts, or \"\""""
+        if named:
+            return named
+        if not self._is_of_a_body(node, used):
+            otherwise = getattr(definition, "otherwise", ()) if self.scope is not None else ()
+            unsaid = (self.scope.first(word, node.span) for word in otherwise if self.scope is not None)
+            return [target for target in unsaid if target is not None][:1]
+        if whose and getattr(definition, "someone", ""):  # `reaches for her hand`
+            return [Target("character", (whose,), whose, node.span, implied=True)]
+        if not rest and getattr(definition, "needs", "none") != "none":
+            body = " ".join(word.text for word in node.words[1 + used :])
+            label = f"`{getattr(definition, 'name', '')}` is done with a thing, not with `{body}`"
+            self.report.error("VDS072", node.span, label=label)
+            return None
+        return []
 
     def lines(self, node: ast.StoryNode) -> tuple[ast.StoryNode, ...]:
         """What a line says as lines in which everybody does one thing, ``while`` as at the same time."""
@@ -130,8 +161,14 @@ class BeatReader:
                 (later if read.later else besides).append(ast.BeatNode(read.besides, span))
             beats.append(first)
         *before, last = self.one_by_one(replace(node, beats=tuple(beats)))
-        after = [_filmed_alike(node, beat) for beat in later]
-        return (*before, replace(last, beats=(*last.beats, *besides)), *after)
+        after: list[ast.StoryNode] = []
+        for beat in besides:  # `anna cooks and sings`: the first at the same time
+            first_of, *others = self.one_by_one(_filmed_alike(node, beat))
+            last = replace(last, beats=(*last.beats, *first_of.beats))
+            after += others
+        for beat in later:
+            after += self.one_by_one(_filmed_alike(node, beat))
+        return (*before, last, *after)
 
     def one_by_one(self, node: ast.StoryNode) -> tuple[ast.StoryNode, ...]:
         """``(ben sits down and reads)`` as two lines, filmed alike; what is said of one is of the first."""
@@ -176,6 +213,7 @@ class BeatReader:
             self.mentions.meant,
             own,
             self._it,
+            self._many,
             self._is_action,
             self.targets.is_name,
             self.mentions.may,
@@ -304,6 +342,14 @@ def _is_second(definition: DefinitionBase, named: list[Target]) -> bool:
         return False
     kinds, also = (tuple(getattr(definition, name, ())) for name in ("target_kinds", "second_kinds"))
     return bool(kinds) and bool(also) and not kind_fits(named[0], kinds) and kind_fits(named[0], also)
+
+
+def _is_prose(said: tuple[ast.Name, ...]) -> bool:
+    """Whether a line is a sentence of somebody who tells a story, ``anna opens the door``: in these there is
+    much besides what is done and to what."""
+    article = any(word.text in words.ARTICLES for word in said)
+    third = [w.text for w in said[1:3] if w.text.endswith("s") and not w.text.endswith("ss")]
+    return article or bool(third)
 
 
 def _filmed_alike(node: ast.StoryNode, beat: ast.BeatNode) -> ast.StoryNode:

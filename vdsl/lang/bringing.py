@@ -73,7 +73,7 @@ def held_at_first(
     if isinstance(written, ast.Call):
         arguments = evaluate_arguments(written.arguments, prop.parameters, {}, report, prop.name)
     thing = Carried(who, name.text, called, tuple(arguments.items()), held=True)
-    return _carry(thing, scene, name.span)
+    return carry(thing, scene, name.span)
 
 
 def _cannot_be_held(name: ast.Name, report: Report) -> None:
@@ -85,7 +85,8 @@ def _cannot_be_held(name: ast.Name, report: Report) -> None:
     )
 
 
-def _carry(thing: Carried, scene: SceneBeingRead, span: Span) -> Target:
+def carry(thing: Carried, scene: SceneBeingRead, span: Span) -> Target:
+    """A thing as a target, known to the scene from here on."""
     assert scene.scope is not None
     scene.carried[thing.path] = thing
     scene.scope.carry(thing.path, thing.prop, span)
@@ -119,7 +120,7 @@ def bring(beat: Beat, scene: SceneBeingRead, catalog: CatalogLike) -> Beat:
     if path not in scene.carried:
         if not getattr(scene.scope.prop(brings), "movable", False):
             return beat
-        return replace(beat, brought=_carry(Carried(beat.character, brings, brings), scene, beat.span))
+        return replace(beat, brought=carry(Carried(beat.character, brings, brings), scene, beat.span))
     return replace(beat, brought=Target("object", path, brings, beat.span))
 
 
@@ -135,7 +136,7 @@ def bring_named(
         return None
     path = (who, word)
     if path not in scene.carried:
-        _carry(Carried(who, word, called), scene, span)
+        carry(Carried(who, word, called), scene, span)
     return Target("object", path, word, span)
 
 
@@ -155,7 +156,7 @@ def put_about(
         label=f"`{word}` is not in this scene: one is put near {who}",
         help=f"`{who} at NAME holding {word}` puts it into a hand, a set of your own where you like",
     )
-    return _carry(Carried(who, word, called, about=True), scene, span)
+    return carry(Carried(who, word, called, about=True), scene, span)
 
 
 def carried_called(word: str, catalog: CatalogLike) -> str:

@@ -27,6 +27,7 @@ from .scope import Scope
 from .settings import Settings, read_header
 from .shots import DEFAULT_PROPOSALS, DEFAULT_STYLE, DEFAULT_TAKES, Defaults, LineContext, read_shots
 from .source import Span
+from .stand_in import stand_in
 from .targets import unknown_character
 from .transitions import Joins
 
@@ -309,6 +310,9 @@ class _Checker:
                 word, span, who, stage, self.catalog
             )
             stage.reader.targets.put_about = lambda word, span, who: put_about(
+                word, span, who, stage, self.catalog, self.report
+            )
+            stage.reader.targets.stand_in = lambda word, span, who: stand_in(
                 word, span, who, stage, self.catalog, self.report
             )
         for line in stage.reader.lines(node):

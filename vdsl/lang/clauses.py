@@ -6,11 +6,11 @@ possessives, and that whatever is left out of them is told.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from . import ast, phrases
-from .phrases import AUXILIARIES, BODY, Known, Words, says_how
-from .pronouns import ONE
+from .phrases import AUXILIARIES, BODY, GIVING, Known, Words, says_how
+from .pronouns import BOTH, ONE
 from .words import ARTICLES, PREPOSITIONS, plain_forms
 
 #: What they begin does not show: why, when, or what somebody thinks of it.
@@ -42,11 +42,40 @@ class Sentence:
 
 def sentence(said: Words, known: Known) -> Sentence:
     """The words of a beat as they are written, taken apart."""
+    begun = _begun_by_clause(said, known)
+    if begun is not None:
+        return begun
     said, left = _with_and(_owned(said, known), known)
     said, besides, clause = _without_clause(said, known)
     later = besides[:1] != () and besides[0].text == "then"
     left_out = tuple(part for part in (clause, *left) if part)
     return Sentence(said, besides[1:] if later else besides, later, left_out)
+
+
+def _begun_by_clause(said: Words, known: Known) -> Sentence | None:
+    """``while ben cooks, anna reads``; None for what begins with who acts."""
+    first, *_ = said
+    says_where = (
+        says_how(first) or first.text in PREPOSITIONS
+    )  # `on the other side of the street, carl waits`
+    comma = next((k for k, word in enumerate(said) if word.text == COMMA), len(said))
+    clause, main = said[1:comma], said[comma + 1 :]
+    if (
+        says_how(first)
+        and len(said) > 2
+        and not main
+        and (said[1].text in known.named or said[1].text in ONE)
+    ):
+        return sentence(said[1:], known)  # `suddenly carl jumps up`
+    if not (says_where or first.text in (*_CLAUSES, "after", "before")) or known.is_name(first) or not main:
+        return None
+    of_main = sentence(main, known)
+    if first.text in ("while", "as", "when") and _acts_besides(main, clause, known) and not of_main.besides:
+        does = sentence(clause, known).words
+        if first.text == "when":  # one thing is what the other waits for
+            return Sentence(does, of_main.words, True, of_main.left_out)
+        return Sentence(of_main.words, does, False, of_main.left_out)
+    return replace(of_main, left_out=((first, *clause), *of_main.left_out))
 
 
 def owner(word: str) -> str:
@@ -122,7 +151,7 @@ def _with_and(said: Words, known: Known) -> tuple[Words, tuple[Words, ...]]:
 
 def _after_comma(before: Words, after: Words, known: Known) -> tuple[bool, Words]:
     """Whether an ``and`` belongs where a comma stands; else what after it says nothing."""
-    subjects = all(each.text in known.named or each.text == "and" for each in before)
+    subjects = before[-1].text in known.named and (len(before) == 1 or before[-2].text in _BESIDES)
     who, *does = after[1:] if after[0].text == "then" else after
     other = who.text in known.named or who.text in ONE
     acts = _begins(tuple(does) if other else after, known) is not None
@@ -133,7 +162,8 @@ def _after_comma(before: Words, after: Words, known: Known) -> tuple[bool, Words
         return True, ()
     end = next((k for k, each in enumerate(after) if each.text == COMMA), len(after))
     part, inserted = after[:end], subjects and end < len(after)
-    names = len(part) == 1 or any(known.is_name(each) for each in part)  # `walk, counter`
+    feels = part[-1].text.endswith(("ed", "ing")) or says_how(part[-1])  # `, puzzled`
+    names = (len(part) == 1 and not feels) or any(known.is_name(each) for each in part)  # `walk, counter`
     return False, part if inserted or not names else ()
 
 
@@ -161,7 +191,7 @@ def _begins(after: Words, known: Known) -> int | None:
         return None
     rest = tuple(word for word in after[at:] if word.text not in ARTICLES) or after[at:]
     if {rest[0].text, *plain_forms(rest[0].text)} & {*AUXILIARIES}:
-        return at
+        rest = rest[2:] if rest[1:2] != () and rest[1].text == "to" else rest[1:]
     sizes = range(1, min(_MOST_ACTION_WORDS, len(rest)) + 1)
     return at if any(known.is_action(rest[:size]) for size in sizes) else None
 
@@ -174,13 +204,32 @@ def _without_clause(said: Words, known: Known) -> tuple[Words, Words, Words]:
         verb = next((at for at in range(1, k) if known.is_action(said[at : at + 1])), k)
         if known.is_name(word) or any(known.is_action(said[at : k + 1]) for at in range(1, k)):
             continue
-        if word.text in _BESIDES and verb < k and _acts_besides(said, after, known):
+        if word.text in ("and", "then") and verb < k and _all_then(after, known):
+            return said[:k], (ast.Name(("then",), word.span), *after), ()
+        if verb + 1 < k and _is_let(said, k, known):
+            return said[:k], (), said[k:]
+        if word.text in _BESIDES and (verb < k or k > 3) and _acts_besides(said, after, known):
             return said[:k], (word, *after) if word.text == "then" else after, ()
         if word.text == "before" and after and after[0].text.endswith("ing") and _begins(after, known) == 0:
             return (*said[:k], ast.Name(("and",), word.span), *after), (), ()
         if word.text in _CLAUSES or (word.text == "to" and _is_purpose(said, k, known)):
             return said[:k], (), said[k:]
     return said, (), ()
+
+
+def _all_then(after: Words, known: Known) -> bool:
+    """Whether words say what ``they`` do next."""
+    return len(after) > 1 and after[0].text in BOTH and _begins(after[1:], known) is not None
+
+
+def _is_let(said: Words, at: int, known: Known) -> bool:
+    """Whether what somebody does begins at a place whom something is done to: ``helps ben sit down``."""
+    word, before = said[at], said[at - 1].text
+    whom = before in known.named or before in ("him", "them")
+    verbs = {said[1].text, *plain_forms(said[1].text)} & {*GIVING}
+    if at < 3 or not whom or verbs or word.text.endswith("s") or word.text in PREPOSITIONS:
+        return False
+    return not says_how(word) and _begins(said[at:], known) == 0
 
 
 def _acts_besides(said: Words, after: Words, known: Known) -> bool:

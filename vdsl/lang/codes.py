@@ -515,6 +515,14 @@ CODES: dict[str, Code] = {
         "scene two = street\n(carl pick up cup)",
         "scene two = street\ncarl at bench holding cup\n(carl wave)",
     ),
+    "VDS084": Code(
+        "a box stands in for something",
+        "What is done is done to a thing that neither the set nor the library has. A plain box lies near who does it "
+        "in its place, from the beginning of the scene on, so that the line can be filmed; a prop of that name in the "
+        "script says what the thing looks like.",
+        "(carl picks up the harp)",
+        "(carl picks up the cup)",
+    ),
     "VDS079": Code(
         "someone has no place yet",
         "Someone takes part in a scene and has not been placed in it. They are put at the scene's first free spot; "

@@ -49,7 +49,8 @@ ADVERBS = (
     "again", "suddenly", "then", "finally", "together", "back", "still", "now", "just", "too",
     "alone", "apart", "aside", "barefoot", "closed", "early", "late", "open", "shut", "sideways", "straight",
     "there", "here", "upside", "one", "two", "all", "own", "once", "last", "long", "alike", "first",
-    "himself", "herself", "themselves", "itself",
+    "faster", "slower", "closer", "nearer", "louder", "harder", "quicker", "farther", "further", "shyly",
+    "slyly", "flat", "himself", "herself", "themselves", "itself",
 )  # fmt: skip
 #: Several words that are one preposition.
 _JOINED = {
@@ -107,7 +108,10 @@ _MEASURES = (
     "pair",
     "piece",
     "pile",
+    "sheet",
     "sip",
+    "slice",
+    "slices",
     "stack",
 )
 #: Parts of a body: an action knows which it needs.
@@ -116,15 +120,19 @@ BODY = {
     "hair", "lip", "ear", "throat", "tongue", "teeth", "brow", "waist", "hip", "hips", "thigh", "toe", "toes",
     "heel", "heels", "thumb", "palm", "palms", "sleeve", "collar", "pocket", "pockets", "neck", "shoulder",
     "shoulders", "back", "chest", "belly", "arm", "arms", "elbow", "hand", "hands", "finger", "fingers",
-    "fist", "fists", "wrist", "leg", "legs", "knee", "knees", "foot", "feet",
+    "stomach", "lap", "ribs", "jaw", "skirt", "pants", "trousers", "jeans", "shirt", "jacket", "coat",
+    "dress", "shoe", "shoes", "boots", "sweater", "apron", "eyebrow", "eyebrows", "fist", "fists", "wrist",
+    "leg", "legs", "knee", "knees", "foot", "feet",
 }  # fmt: skip
 
 #: Verbs that say nothing before a noun for what is done. What is also a thing is not among the nouns, as a
 #: drink or a call; and who takes or has a punch does not hit.
+#: After them somebody is named who gets something.
+GIVING = ("give", "bring", "buy", "hand", "make", "offer", "pass", "pour", "show", "throw", "toss")
 _LIGHT = {"give", "take", "do", "make", "have", "has", "throw", "steal"}
 _DONE_ALONE = {
     "look", "glance", "bow", "walk", "run", "stroll", "nap", "stretch", "jump", "spin", "turn", "laugh",
-    "peek", "hop", "dance", "sigh", "curtsy",
+    "peek", "hop", "sip", "dance", "sigh", "curtsy",
 }  # fmt: skip
 _DONE = _DONE_ALONE | {
     "hug", "kiss", "wave", "nod", "push", "slap", "punch", "pat", "salute", "shrug", "smile", "wink", "frown",
@@ -141,15 +149,16 @@ class Known:
     """What a line's words may stand for.
 
     named: people of the storyboard; them: who, besides the one who acts, a pronoun means, or ""; own: whether
-    it may mean who acts; it: the parts of the name of what was spoken of last, or (); is_action: whether all
-    of some words name an action; is_name: whether a word is somebody's or something's in the scene; may_be:
-    whether a pronoun may mean somebody
+    it may mean who acts; it: the parts of the name of what was spoken of last, or (); many: whether it was
+    several; is_action: whether all of some words name an action; is_name: whether a word is somebody's or
+    something's in the scene; may_be: whether a pronoun may mean somebody
     """
 
     named: Sequence[str]
     them: Callable[..., str]
     own: Callable[[str], bool]
     it: tuple[str, ...]
+    many: bool
     is_action: Callable[[Words], bool]
     is_name: Callable[[ast.Name], bool]
     may_be: Callable[[str, str], bool]
@@ -158,6 +167,10 @@ class Known:
 def plain(said: Words, known: Known) -> Words:
     """The words of a beat without those that say nothing, with all words of a verb side by side."""
     character, rest = said[:1], _without(_with_names(_without_how(said[1:], known), known), known.named)
+    while (
+        len(rest) > 1 and says_how(rest[0]) and not known.is_action(rest[:1]) and not known.is_name(rest[0])
+    ):
+        rest = rest[1:]  # `secretly pulls`
     rest = about_to(rest, known.is_action, known.is_name) or rest
     rest = _one_each(_without_auxiliary(rest, known.is_action), known.is_action)
     while len(rest) > 1 and rest[-1].text in ADVERBS and rest[-1].text not in (*PARTICLES, *known.named):
@@ -178,8 +191,9 @@ def each_of(node: ast.BeatNode, mentions: Mentions, known: Known) -> tuple[tuple
     while count + 1 < len(node.words) and node.words[count].text == "and" and "and" not in known.named:
         count += 2
     if count > 1:
-        mentions.acting = tuple(word.text for word in node.words[:count:2])
-        return _done_by(node, node.words[:count:2], _with_names(node.words[count:], known, False)), True
+        some = tuple(_who(word, mentions) for word in node.words[:count:2])
+        mentions.acting = tuple(word.text for word in some)
+        return _done_by(node, some, _with_names(node.words[count:], known, False)), True
     if first.text in known.named:
         return (node,), False
     rest = node.words[1:]
@@ -197,6 +211,12 @@ def each_of(node: ast.BeatNode, mentions: Mentions, known: Known) -> tuple[tuple
     if not names:
         return (node,), False
     return _done_by(node, names, rest), len(names) == 2 and len(mentions.about) != 2
+
+
+def _who(word: ast.Name, mentions: Mentions) -> ast.Name:
+    """With a name for ``she``, where it may mean somebody."""
+    name = mentions.who_acts(word.text) if word.text in ONE else ""
+    return ast.Name((name,), word.span) if name else word
 
 
 def one_after_the_other(
@@ -235,7 +255,7 @@ def one_after_the_other(
         after = _without_auxiliary(tuple(w for w in after if w.text not in ARTICLES) or after, is_action)
         apart = any(is_action((after[0], word)) for word in after[1:4] if word.text in PARTICLES)
         known = apart or any(is_action(after[:size]) for size in range(1, min(3, len(after)) + 1))
-        return at if known else None
+        return at if known or _looks_like_a_verb(rest[at:], is_thing) else None
 
     cuts = [
         (k, verb_at)
@@ -245,6 +265,14 @@ def one_after_the_other(
     ]
     ends = zip([0, *(verb_at for _, verb_at in cuts)], [*(k for k, _ in cuts), len(rest)], strict=True)
     return who, tuple(rest[begin:end] for begin, end in ends)
+
+
+def _looks_like_a_verb(said: Words, is_thing: Callable[[ast.Name], bool]) -> bool:
+    """Whether words begin with a verb in the third person that nobody knows: ``whirls around``."""
+    if len(said) < 2 or not _is_third(said[0]) or any(map(is_thing, (said[0], *of_several(said[0])))):
+        return False
+    follows = (*ARTICLES, *PARTICLES, *PREPOSITIONS, *_OBJECTS, "it")
+    return said[1].text in follows or said[1].text.endswith("self")
 
 
 def _is_third(verb: ast.Name) -> bool:
@@ -360,8 +388,9 @@ def _with_names(said: Words, known: Known, each_other: bool = True) -> Words:
             continue
         ends = n + 1 == len(said) or said[n + 1].text in (*PREPOSITIONS, *PARTICLES, *ARTICLES, *ADVERBS)
         ends = ends and tuple(w.text for w in said[n + 1 : n + 3]) not in _HER_BACK
-        meant: tuple[str, ...] = known.it if word.text == "it" else ()
-        if word.text in _OBJECTS and (word.text != "her" or ends) and known.them(word.text):
+        things = word.text == "it" or (word.text == "them" and known.many)
+        meant: tuple[str, ...] = known.it if things else ()
+        if not things and word.text in _OBJECTS and (word.text != "her" or ends) and known.them(word.text):
             meant = (known.them(word.text),)
         behind = ends and not meant and out != [] and out[-1].text in WHERE and known.own(word.text)
         if word.text in _OBJECTS and behind and (n + 1 == len(said) or said[n + 1].text not in BODY):
@@ -384,6 +413,15 @@ def _verb_first(rest: Words, known: Known) -> Words:
         return (verb, last, first, *others)
     if last.text in BODY and known.is_action((verb, last)) and first.text not in known.named:
         return (verb, last)  # `wash greasy hands`
+    noun = next((k for k, word in enumerate(rest) if k > 1 and word.text in PREPOSITIONS), len(rest)) - 1
+    light = {verb.text, *plain_forms(verb.text)} & {"take", "have"}
+    if (
+        light
+        and noun > 1
+        and known.is_action((verb, rest[noun]))
+        and not any(known.is_name(w) for w in rest[1:noun])
+    ):
+        return (verb, rest[noun], *rest[noun + 1 :])  # `take a deep breath`
     by = not others or (len(others) == 1 and others[0].text in PREPOSITIONS)
     if first.text in known.named and by and known.is_action((verb, last)):
         return (verb, last, first)

@@ -17,6 +17,7 @@ from .diagnostics import Report, listing, nearest
 from .ir import Target
 from .scope import Scope
 from .source import Span
+from .stand_in import is_slip
 
 KIND_WORDS = {"place": "a place", "object": "a thing", "character": "someone"}
 
@@ -26,7 +27,7 @@ class TargetReader:
 
     scope: of the scene, None where its set is unknown (then no targets are); bring: what somebody takes out
     who has not got it, as a target, from its word, where that stands and who it is; None where that cannot be
-    put_about: the same of what lies near them
+    put_about: the same of what lies near them; stand_in: the same of what no prop is called
     """
 
     def __init__(
@@ -38,8 +39,10 @@ class TargetReader:
         self.report = report
         self.bring: Callable[[str, Span, str], Target | None] | None = None
         self.put_about: Callable[[str, Span, str], Target | None] | None = None
+        self.stand_in: Callable[[str, Span, str], Target | None] | None = None
         self.who: str | None = None  # who acts in the line that is read
         self.said: tuple[ast.Name, ...] = ()  # all words of it
+        self.prose = False  # whether it is a sentence, as `anna opens the door`, and not `anna open door`
 
     def is_name(self, word: ast.Name) -> bool:
         """Whether a word is somebody's, or something's in the scene."""
@@ -52,6 +55,27 @@ class TargetReader:
             "prop"
         )
 
+    def in_hand(
+        self, rest: tuple[ast.Name, ...], definition: DefinitionBase
+    ) -> tuple[tuple[ast.Name, ...], Target | None]:
+        """What follows an action that needs no hands without what who goes, stands or sits has in one, and
+        that: ``walks in with a bag``."""
+        still = getattr(definition, "needs", "none") == "none"
+        at = next((k for k, word in enumerate(rest) if word.text == "with"), len(rest))
+        end = next((k for k in range(at + 1, len(rest)) if rest[k].text in words.PREPOSITIONS), len(rest))
+        group = list(rest[at + 1 : end])
+        if not group or not still or getattr(definition, "group", "") not in ("going", "posture"):
+            return rest, None
+        group = self._without_adjectives(group, True)
+        word = "_".join(name.text for name in group)
+        if self.bring is None or self.who is None or not carried_called(word, self.catalog):
+            return rest, None
+        span = group[0].span.to(group[-1].span)
+        own = self.scope.carried_by(self.who, word) if self.scope is not None else None
+        if own is None and not self._is_nowhere(group):
+            return rest, None  # it is somewhere in the scene: nobody has it yet
+        return rest[:at] + rest[end:], self.bring(word, span, self.who)
+
     def named(
         self, rest: tuple[ast.Name, ...], definition: DefinitionBase, verb: ast.Name
     ) -> list[Target] | None:
@@ -61,9 +85,15 @@ class TargetReader:
             return None
         if groups and len(groups[0]) > 1 and self._is_given_to(groups[0][0], definition):
             groups = [groups[0][1:], groups[0][:1], *groups[1:]]  # `give ben the cup`
+        elif self.prose and groups and len(groups[0]) > 1 and groups[0][0].text in self.characters:
+            whom, *first = groups[0]  # `pours him a drink`
+            if "character" not in _kinds(definition)[0] and not self._is_nothing(first):
+                self._leave_out(whom.span, f"`{getattr(definition, 'name', 'it')}` is done for nobody")
+                groups = [first, *groups[1:]]
         groups = self._taken(groups, (verb, *rest), definition)
         if getattr(definition, "anything", False):  # `write poem` is done at a desk
             groups = [g for g in groups if not self._is_nowhere(g) or self._is_like_something(g)]
+        groups = self._there(groups, (verb, *rest), definition)
         if len(groups) > 2:
             self.report.error("VDS073", groups[2][0].span, label="an action has two targets at most")
             return None
@@ -72,7 +102,7 @@ class TargetReader:
         things = [(not k or "object" in k) and _is_done_to(definition) for k in _kinds(definition)]
         before = {id(word): last.text for last, word in pairwise((verb, *rest))}
         found = [
-            self._target(group, n == held, things[n] and before.get(id(group[0])) != "with")
+            self._target(group, n == held, n == 0, things[n] and before.get(id(group[0])) != "with")
             for n, group in enumerate(groups)
         ]
         known = [target for target in found if target is not None]
@@ -84,30 +114,46 @@ class TargetReader:
         """Without where it is done, where an action takes no more targets: `peeks at her over the paper`."""
         takes = [getattr(definition, name, "none") != "none" for name in ("target", "second")]
         most = 2 if takes[1] else int(takes[0])
-        where = (*words.WHERE, *words.BESIDES)
+        where: tuple[str, ...] = (*words.WHERE, *words.BESIDES)
+        if self.prose:
+            where = tuple(word for word in words.PREPOSITIONS if word not in words.WHITHER)
         before = {id(word): last for last, word in pairwise(said) if last.text in where}
         while groups and id(groups[-1][0]) in before:
             link = before[id(groups[-1][0])].text
             loose = link in words.BESIDES and self._is_nothing(groups[-1])
             loose = loose or (link in words.WHERE and self._is_wrongly_somebody(groups, definition))
-            if not loose and (len(groups) <= most or link == "with"):
+            if not loose and (len(groups) <= most or (link == "with" and not self.prose)):
                 break
             *groups, last = groups
             span = before[id(last[0])].span.to(last[-1].span)
-            self.report.warn(
-                "VDS082",
-                span,
-                label=f"`{span.text}` is left out",
-                help=f"`{getattr(definition, 'name', 'it')}` is done to no more",
-            )
+            self._leave_out(span, f"`{getattr(definition, 'name', 'it')}` is done to no more")
         return groups
 
+    def _leave_out(self, span: Span, why: str) -> None:
+        self.report.warn("VDS082", span, label=f"`{span.text}` is left out", help=why)
+
+    def _there(
+        self, groups: list[list[ast.Name]], said: tuple[ast.Name, ...], definition: DefinitionBase
+    ) -> list[list[ast.Name]]:
+        """Without what a sentence looks or points at, or listens to, and the scene has not."""
+        optional = getattr(definition, "target", "none") == "optional"
+        going = getattr(definition, "group", "") in ("going", "posture")
+        before = {id(word): last.text for last, word in pairwise(self.said)}
+        thing = len(groups) == 1 and before.get(id(groups[0][0])) in words.ARTICLES
+        if not (self.prose and optional and thing) or going or not self._is_nothing(groups[0]):
+            return groups
+        group = groups[0]
+        help = f"nothing is called `{group[-1].text}` here; `vdsc assets props --search WORDS` finds things"
+        self._leave_out(group[0].span.to(group[-1].span), help)
+        return []
+
     def _is_wrongly_somebody(self, groups: list[list[ast.Name]], definition: DefinitionBase) -> bool:
-        """Whether the only target is somebody, to whom an action is not done: `sleeps beside anna`."""
-        kinds, _ = _kinds(definition)
-        wants = getattr(definition, "target", "none")
-        alone = len(groups) == 1 and len(groups[0]) == 1 and groups[0][0].text in self.characters
-        return alone and wants == "optional" and bool(kinds) and "character" not in kinds
+        """Whether the last target is somebody, to whom an action is not done: `sleeps beside anna`."""
+        first, second = len(groups) == 1, len(groups) == 2
+        kinds = _kinds(definition)[0 if first else 1]
+        optional = getattr(definition, "target" if first else "second", "none") == "optional"
+        somebody = len(groups[-1]) == 1 and groups[-1][0].text in self.characters
+        return (first or second) and somebody and optional and bool(kinds) and "character" not in kinds
 
     def _is_nothing(self, group: list[ast.Name]) -> bool:
         """Whether words name nothing in the scene or in the library, nor nearly."""
@@ -141,12 +187,12 @@ class TargetReader:
             return None
         return groups
 
-    def _target(self, group: list[ast.Name], held: bool, thing: bool) -> Target | None:
+    def _target(self, group: list[ast.Name], held: bool, first: bool, thing: bool) -> Target | None:
         """One target by its word, or by several words that are one name (``bus stop``), or end in one (``old
         car``).
 
         held: it is to be in a hand, so that what the scene has not is brought, if it is a prop; thing: it may
-        be a thing, so that such a prop lies about
+        be a thing, so that such a prop lies about; first: it is what something is done to, and not where
         """
         group = self._without_adjectives(group, held or thing)
         if len(group) > 1 and self.scope is not None:
@@ -164,6 +210,14 @@ class TargetReader:
             brought = get("_".join(name.text for name in group), span, self.who)
             if brought is not None:
                 return brought
+        if first and (held or thing) and self._may_have_stand_in(group):
+            assert self.stand_in is not None
+            assert self.who is not None
+            stands = self.stand_in(group[-1].text, group[-1].span, self.who)
+            if stands is not None:
+                return stands
+        if len(group) > 1 and all(self._is_nowhere([name]) for name in group):
+            return self._resolve(group[-1])  # `red dress`: there is no dress
         if len(group) > 1:
             names = group[0].span.to(group[-1].span).text
             help = f"a second target follows a word like `to`: `{group[0].text} to {group[1].text}`"
@@ -172,6 +226,24 @@ class TargetReader:
             self.report.error("VDS073", group[1].span, label=f"`{names}` is not one name", help=help)
             return None
         return self._resolve(group[0])
+
+    def _may_have_stand_in(self, group: list[ast.Name]) -> bool:
+        """Whether words of a sentence are an article or a possessive and a noun that nobody knows: ``her old
+        harp``."""
+        before = {id(word): last.text for last, word in pairwise(self.said)}
+        noun = before.get(id(group[0])) in words.ARTICLES
+        known = (*self.characters, *(self.scope.known() if self.scope is not None else ()))
+        close = any(nearest(group[-1].text, [name]) is not None for name in self.characters)
+        return (
+            self.prose
+            and noun
+            and not close
+            and self.stand_in is not None
+            and self.who is not None
+            and all(self._is_nowhere([name]) for name in group)
+            and group[-1].text not in phrases.BODY
+            and not any(is_slip(group[-1].text, name) for name in known)
+        )
 
     def _without_adjectives(self, group: list[ast.Name], held: bool) -> list[ast.Name]:
         """The words from the first on with which they are a name, after words for what that is like; of

@@ -193,6 +193,8 @@ WHERE = (
 )  # fmt: skip
 #: What they begin is hardly ever what is done, but whence, why or by what.
 BESIDES = ("from", "for", "about", "of", "with")
+#: What they begin is where something ends up: that would be seen.
+WHITHER = ("to", "into", "onto", "toward", "towards")
 #: Words before a name that say nothing here: articles, and whose it is.
 ARTICLES = ("the", "a", "an", "some", "her", "his", "their", "its", "my", "your", "our")
 

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from runtime.nav import nearest_free, reachable
 from runtime.world import Solids, World, WorldObject
+from vdsl.cinema.sight import clear_lines
 from vdsl.lang.definitions.set import SetDef, check_set
 from vdsl.lang.diagnostics import Report
 from vdsl.lang.source import Source
@@ -183,6 +184,17 @@ def test_a_script_finds_its_places_by_name(name: str) -> None:
         "anna at " + lines[0].removeprefix("(anna walk ").removesuffix(")") + "\n" + "\n".join(lines) + "\n"
     )
     assert [d.label for d in check_source(Source("walk.vds", text)).report.diagnostics] == []
+
+
+@pytest.mark.parametrize(("name", "lamp"), [("apartment", "pendant"), ("garage", "lamp"), ("cafe", "lamp")])
+def test_lamps_that_hang_in_a_room_hide_what_is_behind(name: str, lamp: str) -> None:
+    built = world(name)
+    x, y, z = next(o for o in built.objects if o.path[-1] == lamp).low
+    x, y, z = x + 0.2, y + 0.2, z + 0.1  # inside its shade
+    camera = np.array([[[x - 0.8, y, z]]])
+    points = np.array([[(x + 0.8, y, z), (x + 0.8, y, z - 0.6)]])
+    hidden = np.zeros((1, len(built.walls)), bool)
+    assert clear_lines(built.solids, camera, points, hidden)[0, 0].tolist() == [False, True]
 
 
 # --- measuring ------------------------------------------------------------------------

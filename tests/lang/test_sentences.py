@@ -180,6 +180,19 @@ def test_what_stands_before_who_acts(line: str, expected: list[list[tuple[str, s
     assert done(line) == expected
 
 
+def test_words_choose_among_the_ways_to_do_it() -> None:
+    for line, ways in (
+        ("(anna kisses ben on the cheek)", ("cheek",)),
+        ("(anna kisses ben)", ()),
+        ("(anna pats ben's back)", ("back",)),
+        ("(anna pats ben on the shoulder)", ("plain",)),
+        ("(anna gives the cup to ben with both hands)", ("both-hands",)),
+    ):
+        board, report = read(line)
+        assert board is not None, report.errors
+        assert board.lines[0].beats[0].ways == ways, line
+
+
 def test_an_unknown_verb_after_and_is_told_by_itself() -> None:
     _, report = read("(anna sits down and frobnicates the door)")
     assert [(d.code, d.span.text) for d in report.errors] == [("VDS071", "frobnicates")]

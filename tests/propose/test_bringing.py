@@ -217,3 +217,27 @@ def test_of_two_things_that_lie_about_none_is_in_the_other() -> None:
 
 def _is_annas(staged: StagedScene, number: int) -> bool:
     return staged.world.objects[number].path[:1] == ("anna",)
+
+
+def test_who_walks_with_something_has_it_in_a_hand() -> None:
+    walk, put = played("(anna walks to the bench with a bag)\n(anna puts down the bag)\n")
+    assert away(walk, ("anna", "bag"), "anna", "r") < 0.35
+    assert seen(put, ("anna", "bag")) > 0.2
+
+
+def test_a_box_stands_in_for_what_no_prop_is_called() -> None:
+    look, take = played("(anna looks at ben)\n(anna picks up the harp)\n")
+    assert 0.2 < seen(look, ("anna", "harp")) < 0.4
+    staged, story = take
+    harp = next(o for o in staged.world.objects if o.path == ("anna", "harp"))
+    assert np.linalg.norm(story.props[harp.id][-1][:3, 3] - story.props[harp.id][0][:3, 3]) > 0.3
+
+
+def test_a_line_may_say_how_it_is_done() -> None:
+    script = HEAD.format(anna="fountain") + "(anna kisses ben on the cheek)\n(anna kisses ben)\n"
+    told = [
+        tell(act.state, act.line, act.filming)
+        for act in stage_acts(check_source(Source("x.vds", script), Report()))
+    ]
+    cheek, any_way = ({story.variant for story in each.proposals} for each in told)
+    assert cheek == {"cheek"} < any_way

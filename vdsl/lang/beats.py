@@ -110,7 +110,8 @@ class BeatReader:
             if target.kind == "character" and target.path[0] == character:
                 self.report.error("VDS075", target.span, label=f"{character} cannot do this to themselves")
                 return None
-        return Beat(character, action, first, second, node.span, manner, in_hand, who=node.who)
+        ways = _ways(definition, self.targets.said[2:])
+        return Beat(character, action, first, second, node.span, manner, in_hand, node.who, ways)
 
     def _is_of_a_body(self, node: ast.BeatNode, used: int) -> bool:
         """Whether what is done is done to a part of a body."""
@@ -342,6 +343,18 @@ def _is_second(definition: DefinitionBase, named: list[Target]) -> bool:
         return False
     kinds, also = (tuple(getattr(definition, name, ())) for name in ("target_kinds", "second_kinds"))
     return bool(kinds) and bool(also) and not kind_fits(named[0], kinds) and kind_fits(named[0], also)
+
+
+def _ways(definition: DefinitionBase, said: tuple[ast.Name, ...]) -> tuple[str, ...]:
+    """The variants of an action that a line names, as ``cheek`` in ``kisses ben on the cheek``; where it
+    names a part of the body that none is of, those that are of no part; else () for all."""
+    names = [str(getattr(variant, "name", "")) for variant in getattr(definition, "variants", ())]
+    texts = {words.fold(word.text) for word in said}
+    named = tuple(name for name in names if name and texts.issuperset(words.fold(name).split("-")))
+    of_body = [name for name in names if name in phrases.BODY]
+    if not named and of_body and texts & phrases.BODY:
+        return tuple(name for name in names if name not in of_body)
+    return named
 
 
 def _is_prose(said: tuple[ast.Name, ...]) -> bool:

@@ -132,6 +132,7 @@ class Beat:
     manner: how it is done (a word of :data:`runtime.motion.manner.MANNERS`), "" where nothing was said
     brought: what it is done with where the line names nothing: a thing somebody has about them, or in a hand
     who: where the script says who acts, if not at the beginning of ``span``
+    ways: the action's variants that the line's words name; () for any
     """
 
     character: str
@@ -142,6 +143,7 @@ class Beat:
     manner: str = ""
     brought: Target | None = None
     who: Span | None = field(default=None, compare=False, repr=False)
+    ways: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)

@@ -72,7 +72,8 @@ class TargetReader:
             return rest, None
         span = group[0].span.to(group[-1].span)
         own = self.scope.carried_by(self.who, word) if self.scope is not None else None
-        if own is None and not self._is_nowhere(group):
+        before = {id(name): last.text for last, name in pairwise(self.said)}
+        if own is None and before.get(id(rest[at + 1])) == "the" and not self._is_nowhere(group):
             return rest, None  # it is somewhere in the scene: nobody has it yet
         return rest[:at] + rest[end:], self.bring(word, span, self.who)
 

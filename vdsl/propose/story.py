@@ -32,7 +32,7 @@ from .bringing import with_things_at_hand
 from .cameras import Filming, propose_cameras
 from .drawing import generator
 from .state import SceneState, opening_state
-from .tasks import Errand, disc, errand, speaking
+from .tasks import Errand, as_said, disc, errand, speaking
 from .types import STILL, Performance, ProposalGrid, StoryProposal
 
 __all__ = ["SceneState", "Told", "advance", "film", "opening_state", "propose", "propose_story", "tell"]
@@ -162,7 +162,7 @@ def _errands(
         definition = filming.catalog.get("action", beat.action)
         if not isinstance(definition, ActionDef) or beat.character not in state.actors:
             continue
-        clip: ActionClip = build_clip(definition)
+        clip: ActionClip = as_said(build_clip(definition), beat.ways)
         if number == 0 and shot is not None and shot.say:
             clip = speaking(clip)
         found = errand(beat, clip, shot, state, filming.skeletons, taken, report)

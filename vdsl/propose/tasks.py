@@ -423,3 +423,9 @@ def speaking(clip: ActionClip) -> ActionClip:
 def disc(stop: Stop) -> tuple[float, float, float, float]:
     """A place somebody is about to stand at, as an obstacle."""
     return stop.x, stop.y, PERSON_RADIUS, stop.z
+
+
+def as_said(clip: ActionClip, ways: tuple[str, ...]) -> ActionClip:
+    """The clip with those of its variants that the line names, all where it names none."""
+    variants = tuple(v for v in clip.variants if v.name in ways)
+    return replace(clip, variants=variants) if variants else clip

@@ -83,13 +83,15 @@ class BeatReader:
         named = self.targets.named(rest, definition, node.words[used])
         if named is None or character is None:
             return None
-        if used == 1:  # `grabs ben`, and not `picks up ben`
+        up = used > 1 and node.words[used].text in phrases.PARTICLES  # `grabs ben`, and not `picks up ben`
+        if not up:
             action, definition = self._done_to(action, definition, named)
         whom = spoken_of if possessed else mentions.other()
         found = self._unsaid(node, used, definition, rest, named, whom if possessed else "")
         if found is None:
             return None
-        action, definition = self._done_to(action, definition, found) if used == 1 else (action, definition)
+        if not up:
+            action, definition = self._done_to(action, definition, found)
         named = found
         if not named and whom and self.takes_somebody(action):
             named = [Target("character", (whom,), whom, node.span, implied=True)]

@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 
 from . import ast, phrases
 from .phrases import AUXILIARIES, BODY, GIVING, Known, Words, says_how
-from .pronouns import BOTH, ONE
+from .pronouns import ALL, BOTH, ONE
 from .words import ARTICLES, PREPOSITIONS, plain_forms
 
 #: What they begin does not show: why, when, or what somebody thinks of it.
@@ -209,7 +209,11 @@ def _without_clause(said: Words, known: Known) -> tuple[Words, Words, Words]:
         if verb + 1 < k and _is_let(said, k, known):
             return said[:k], (), said[k:]
         if word.text in _BESIDES and (verb < k or k > 3) and _acts_besides(said, after, known):
-            return said[:k], (word, *after) if word.text == "then" else after, ()
+            plural = (
+                said[0].text in (*BOTH, *ALL) and word.text == "and"
+            )  # who does both, one after the other
+            then = ast.Name(("then",), word.span)
+            return said[:k], (then, *after) if plural or word.text == "then" else after, ()
         if word.text == "before" and after and after[0].text.endswith("ing") and _begins(after, known) == 0:
             return (*said[:k], ast.Name(("and",), word.span), *after), (), ()
         if word.text in _CLAUSES or (word.text == "to" and _is_purpose(said, k, known)):
@@ -226,7 +230,7 @@ def _is_let(said: Words, at: int, known: Known) -> bool:
     """Whether what somebody does begins at a place whom something is done to: ``helps ben sit down``."""
     word, before = said[at], said[at - 1].text
     whom = before in known.named or before in ("him", "them")
-    verbs = {said[1].text, *plain_forms(said[1].text)} & {*GIVING}
+    verbs = any({each.text, *plain_forms(each.text)} & {*GIVING} for each in said[1:at])
     if at < 3 or not whom or verbs or word.text.endswith("s") or word.text in PREPOSITIONS:
         return False
     return not says_how(word) and _begins(said[at:], known) == 0

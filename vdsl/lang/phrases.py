@@ -46,11 +46,13 @@ _SAID_HOW = (
 )  # fmt: skip
 #: They say when, or how often; never what.
 ADVERBS = (
-    "again", "suddenly", "then", "finally", "together", "back", "still", "now", "just", "too",
-    "alone", "apart", "aside", "barefoot", "closed", "early", "late", "open", "shut", "sideways", "straight",
+    "again", "suddenly", "then", "finally", "together", "back", "still", "now", "just", "too", "alone",
+    "apart", "aside", "barefoot", "closed", "early", "late", "open", "shut", "sideways", "straight",
     "there", "here", "upside", "one", "two", "all", "own", "once", "last", "long", "alike", "first",
-    "faster", "slower", "closer", "nearer", "louder", "harder", "quicker", "farther", "further", "shyly",
-    "slyly", "flat", "himself", "herself", "themselves", "itself",
+    "faster", "slower", "closer", "nearer", "louder", "harder", "quicker", "farther", "further",
+    "shyly", "slyly", "flat", "himself", "herself", "themselves", "itself", "twice", "lower", "higher",
+    "upright", "upstairs", "downstairs", "indoors", "outdoors", "forward", "forwards", "backwards",
+    "downwards", "upwards", "little", "both",
 )  # fmt: skip
 #: Several words that are one preposition.
 _JOINED = {
@@ -469,7 +471,9 @@ def _texts(said: Words) -> list[str]:
 
 
 def _without_auxiliary(rest: Words, is_action: Callable[[Words], bool]) -> Words:
-    """``cry`` of ``starts to cry`` and of ``is crying``."""
+    """``cry`` of ``starts to cry``, of ``is crying`` and of ``goes on crying``."""
+    if [word.text for word in rest[1:2]] == ["on"] and rest[2:] != () and rest[2].text.endswith("ing"):
+        rest = rest[2:] if {rest[0].text, *plain_forms(rest[0].text)} & {"go"} else rest
     if not rest or not {rest[0].text, *plain_forms(rest[0].text)} & {*AUXILIARIES}:
         return rest
     after = rest[2:] if len(rest) > 2 and rest[1].text == "to" else rest[1:]

@@ -75,7 +75,10 @@ class TargetReader:
         before = {id(name): last.text for last, name in pairwise(self.said)}
         if own is None and before.get(id(rest[at + 1])) == "the" and not self._is_nowhere(group):
             return rest, None  # it is somewhere in the scene: nobody has it yet
-        return rest[:at] + rest[end:], self.bring(word, span, self.who)
+        rest = rest[:at] + rest[end:]
+        while rest and rest[-1].text in words.PREPOSITIONS and not self.is_name(rest[-1]):
+            rest = rest[:-1]  # `hurries in`
+        return rest, self.bring(word, span, self.who)
 
     def named(
         self, rest: tuple[ast.Name, ...], definition: DefinitionBase, verb: ast.Name

@@ -18,12 +18,16 @@ def beat_words(beat: Beat) -> str:
     said = beat.span.text.strip().removeprefix("(").removesuffix(")").split()
     if beat.who is not None:
         said = [*beat.who.text.split(), *said]
-    first = said[0].removesuffix(",")
-    if first in ONE:
+    first, several = said[0].removesuffix(","), [word.removesuffix(",") for word in said[:6]]
+    if first in ONE and said[1:2] != ["and"]:
         return " ".join((beat.character, *said[1:]))
     if first in OWNERS:
         return " ".join((f"{beat.character}'s", *said[1:]))  # `her hands tremble`
-    if (owner(first) or first) in (beat.character, *BOTH, *ALL) or said[1:2] == ["and"]:
+    if (
+        (owner(first) or first) in (beat.character, *BOTH, *ALL)
+        or "and" in said[1:2]
+        or beat.character in several
+    ):
         return " ".join(said)
     words = [beat.character, beat.action]
     if beat.target is not None and not beat.target.implied:

@@ -16,8 +16,9 @@ from .catalog import CatalogLike
 from .definitions.types import DefinitionBase
 from .diagnostics import Report, listing, nearest
 from .ir import Beat, Target
-from .pronouns import Mentions
+from .pronouns import ONE, Mentions
 from .scope import Scope
+from .source import Span
 from .targets import KIND_WORDS, TargetReader, kind_fits, unknown_character
 
 _MOST_ACTION_WORDS = 5
@@ -26,6 +27,7 @@ _MOST_LISTED = 30
 _INTO = ("to", "in", "into", "on", "onto")
 #: Options of one shot, which of what is done one after the other is the first.
 _OF_ONE = ("duration", "say", "note", "name")
+_NOT_SHOWN = "it is no action of theirs; what somebody else does at the same time is joined by `+`"
 #: `talk on the phone` is done with it, `look at the phone` to it.
 _BY_WHICH = ("on", "into")
 
@@ -83,7 +85,7 @@ class BeatReader:
         named = self.targets.named(rest, definition, node.words[used])
         if named is None or character is None:
             return None
-        up = used > 1 and node.words[used].text in phrases.PARTICLES  # `grabs ben`, and not `picks up ben`
+        up = used > 1 and node.words[used].text == "up"  # `grabs ben`, and not `picks up ben`
         if not up:
             action, definition = self._done_to(action, definition, named)
         whom = spoken_of if possessed else mentions.other()
@@ -147,31 +149,42 @@ class BeatReader:
 
     def lines(self, node: ast.StoryNode) -> tuple[ast.StoryNode, ...]:
         """What a line says as lines in which everybody does one thing, ``while`` as at the same time."""
+        lines: list[ast.StoryNode] = []
         beats: list[ast.BeatNode] = []
+        later: list[ast.StoryNode] = []
         besides: list[ast.BeatNode] = []
-        later: list[ast.BeatNode] = []
         for beat in node.beats:
             read = clauses.sentence(beat.words, self._known())
-            for part in read.left_out:
-                span = part[0].span.to(part[-1].span)
-                self.report.warn(
-                    "VDS082", span, label=f"`{span.text}` is left out", help="nothing of it would show"
-                )
-            first = replace(beat, words=read.words)
-            if read.besides:
-                first = replace(first, span=read.words[0].span.to(read.words[-1].span))
-                span = read.besides[0].span.to(read.besides[-1].span)
-                (later if read.later else besides).append(ast.BeatNode(read.besides, span))
-            beats.append(first)
-        *before, last = self.one_by_one(replace(node, beats=tuple(beats)))
+            for left in read.left_out:
+                span = left[0].span.to(left[-1].span)
+                self.report.warn("VDS082", span, label=f"`{span.text}` is left out", help=_NOT_SHOWN)
+            first, *others = (self._named_in(read.parts, n) for n in range(len(read.parts)))
+            whole = len(read.parts) == 1 and first[0] is beat.words[0]
+            beats.append(replace(beat, words=first, span=beat.span if whole else _span(first)))
+            for said, part in zip(others, read.parts[1:], strict=True):
+                done = ast.BeatNode(said, _span(said))
+                if part.meanwhile and not later:
+                    besides.append(done)
+                elif part.meanwhile:
+                    later[-1] = replace(later[-1], beats=(*later[-1].beats, done))
+                else:
+                    later += self.one_by_one(_filmed_alike(node, done))
+        *lines, last = self.one_by_one(replace(node, beats=tuple(beats)))
         after: list[ast.StoryNode] = []
         for beat in besides:  # `anna cooks and sings`: the first at the same time
-            first_of, *others = self.one_by_one(_filmed_alike(node, beat))
-            last = replace(last, beats=(*last.beats, *first_of.beats))
-            after += others
-        for beat in later:
-            after += self.one_by_one(_filmed_alike(node, beat))
-        return (*before, last, *after)
+            one, *more = self.one_by_one(_filmed_alike(node, beat))
+            last = replace(last, beats=(*last.beats, *one.beats))
+            after += more
+        return (*lines, last, *after, *later)
+
+    def _named_in(self, parts: tuple[clauses.Part, ...], n: int) -> tuple[ast.Name, ...]:
+        """The words of a part, with a name for ``he`` where that is whom the part before was about."""
+        said = parts[n].words
+        if n == 0 or said[0].text not in ONE:
+            return said
+        before = [word.text for word in parts[n - 1].words[1:] if word.text in self.characters]
+        may = {name for name in before if self.mentions.may(said[0].text, name)}
+        return said if len(may) != 1 else (ast.Name((may.pop(),), said[0].span), *said[1:])
 
     def one_by_one(self, node: ast.StoryNode) -> tuple[ast.StoryNode, ...]:
         """``(ben sits down and reads)`` as two lines, filmed alike; what is said of one is of the first."""
@@ -219,6 +232,7 @@ class BeatReader:
             self._many,
             self._is_action,
             self.targets.is_name,
+            self.targets.is_thing,
             self.mentions.may,
         )
 
@@ -365,6 +379,12 @@ def _is_prose(said: tuple[ast.Name, ...]) -> bool:
     article = any(word.text in words.ARTICLES for word in said)
     third = [w.text for w in said[1:3] if w.text.endswith("s") and not w.text.endswith("ss")]
     return article or bool(third)
+
+
+def _span(said: tuple[ast.Name, ...]) -> Span:
+    """Where the words of a part stand, but for what was put behind them from elsewhere."""
+    count = next((k for k in range(1, len(said)) if said[k].span.start < said[k - 1].span.start), len(said))
+    return said[0].span.to(said[count - 1].span)
 
 
 def _filmed_alike(node: ast.StoryNode, beat: ast.BeatNode) -> ast.StoryNode:

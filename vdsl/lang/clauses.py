@@ -1,86 +1,203 @@
 """Sentences in the words of one beat: ``while ben cooks``, ``, smiling``, ``carl's hand``.
 
-Assumes the words of one beat as they are written, commas among them. Guarantees words without commas and
-possessives, and that whatever is left out of them is told.
+Assumes the words of one beat as they are written, commas among them. Guarantees parts in the order they are
+done in, each beginning with who does it, without commas and possessives, and that what is left out is told.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
+from runtime.motion.manner import MANNERS
+
 from . import ast, phrases
-from .phrases import AUXILIARIES, BODY, GIVING, Known, Words, says_how
+from .diagnostics import is_slip
+from .phrases import AUXILIARIES, BODY, Known, Words, is_third, says_how
 from .pronouns import ALL, BOTH, ONE
-from .words import ARTICLES, PREPOSITIONS, plain_forms
+from .words import ARTICLES, PREPOSITIONS, fold, plain_forms
 
 #: What they begin does not show: why, when, or what somebody thinks of it.
 _CLAUSES = (
-    "as", "because", "but", "if", "like", "since", "so", "than", "that", "till", "unless", "until", "when",
-    "where", "which", "while", "who", "without",
+    "as", "because", "but", "if", "like", "since", "so", "than", "till", "unless", "until", "when", "where",
+    "which", "while", "who", "without",
 )  # fmt: skip
-#: What comes after them and somebody's name is done at the same time, or then.
-_BESIDES = ("while", "as", "and", "then")
+#: What somebody else does is at the same time, or later.
+_MEANWHILE, _LATER = ("while", "as", "and"), ("and", "then")
 #: Whose something is, before it, and who that is.
 OWNERS = {"his": "he", "her": "she"}
+#: What a part of a body does is what its owner does: `her hands tremble`.
+_OF_A_BODY = ("tremble", "shake", "shiver", "quiver", "twitch")
+#: Somebody does them to what somebody else is doing.
+_PERCEIVES = {
+    "look",
+    "watch",
+    "see",
+    "hear",
+    "listen",
+    "notice",
+    "catch",
+    "find",
+    "smell",
+    "spot",
+    "wave",
+    "point",
+}
 COMMA = ","
 _MOST_ACTION_WORDS = 3
 
 
 @dataclass(frozen=True)
-class Sentence:
-    """What a beat says.
-
-    words: who does what; besides: what somebody else does, or (); later: whether they do it after that and
-    not at the same time; left_out: what says nothing
-    """
+class Part:
+    """Who does what. meanwhile: at the same time as the part before, else after it"""
 
     words: Words
-    besides: Words = ()
-    later: bool = False
+    meanwhile: bool = False
+
+
+@dataclass(frozen=True)
+class Sentence:
+    """What a beat says: its parts, and what says nothing to a picture."""
+
+    parts: tuple[Part, ...]
     left_out: tuple[Words, ...] = ()
 
 
 def sentence(said: Words, known: Known) -> Sentence:
     """The words of a beat as they are written, taken apart."""
-    begun = _begun_by_clause(said, known)
+    said = _owned(said, known)
+    begun = _begun(said, known)
     if begun is not None:
         return begun
-    said, left = _with_and(_owned(said, known), known)
-    said, besides, clause = _without_clause(said, known)
-    later = besides[:1] != () and besides[0].text == "then"
-    left_out = tuple(part for part in (clause, *left) if part)
-    return Sentence(said, besides[1:] if later else besides, later, left_out)
-
-
-def _begun_by_clause(said: Words, known: Known) -> Sentence | None:
-    """``while ben cooks, anna reads``; None for what begins with who acts."""
-    first, *_ = said
-    says_where = (
-        says_how(first) or first.text in PREPOSITIONS
-    )  # `on the other side of the street, carl waits`
-    comma = next((k for k, word in enumerate(said) if word.text == COMMA), len(said))
-    clause, main = said[1:comma], said[comma + 1 :]
-    if (
-        says_how(first)
-        and len(said) > 2
-        and not main
-        and (said[1].text in known.named or said[1].text in ONE)
-    ):
-        return sentence(said[1:], known)  # `suddenly carl jumps up`
-    if not (says_where or first.text in (*_CLAUSES, "after", "before")) or known.is_name(first) or not main:
-        return None
-    of_main = sentence(main, known)
-    if first.text in ("while", "as", "when") and _acts_besides(main, clause, known) and not of_main.besides:
-        does = sentence(clause, known).words
-        if first.text == "when":  # one thing is what the other waits for
-            return Sentence(does, of_main.words, True, of_main.left_out)
-        return Sentence(of_main.words, does, False, of_main.left_out)
-    return replace(of_main, left_out=((first, *clause), *of_main.left_out))
+    said, left = _with_and(said, known)
+    parts, clauses = _parts(said, known)
+    return Sentence(parts, (*clauses, *left))
 
 
 def owner(word: str) -> str:
     """Whose something is by a word as ``carl's``; "" for another word."""
     return word[:-2] if word.endswith(("'s", "’s")) else ""
+
+
+# --- who acts, and verbs -----------------------------------------------------------------
+
+
+def _subject(said: Words, known: Known) -> int:
+    """How many words name who acts at the beginning of some; 0 for nobody."""
+    if not said or not (said[0].text in known.named or said[0].text in (*ONE, *BOTH, *ALL)):
+        return 0
+    if [word.text for word in said[:2]] == ["they", "all"]:
+        return 2
+    count = 1
+    while (
+        count + 1 < len(said) and said[count].text in ("and", COMMA) and said[count + 1].text in known.named
+    ):
+        after = said[count + 2 :]
+        if said[count].text == COMMA and after and after[0].text not in ("and", COMMA) and count == 1:
+            alone = len(said) > count + 2 and _begins(after, known) is not None and not is_third(after[0])
+            if not alone:  # `anna, ben and carl` is a list, `anna, ben waves` is none
+                break
+        count += 2
+    return count
+
+
+def _subjects(said: Words, known: Known) -> tuple[str, ...]:
+    return tuple(word.text for word in said[: _subject(said, known)] if word.text not in ("and", COMMA))
+
+
+def _is_prose(said: Words, known: Known) -> bool:
+    """Whether the first verb is in the third person."""
+    verb = next((word for word in _does(said, _subject(said, known)) if not says_how(word)), None)
+    return verb is not None and is_third(verb)
+
+
+def _does(said: Words, who: int) -> Words:
+    """What follows those who act, but for what is inserted: ``sits down`` of ``anna, annoyed, sits down``."""
+    if said[who : who + 1] == () or said[who].text != COMMA:
+        return said[who:]
+    comma = next((k for k in range(who + 1, len(said)) if said[k].text == COMMA), who)
+    return said[comma + 1 :]
+
+
+def _is_ing(word: ast.Name, known: Known) -> bool:
+    """Whether a word is a participle of a known verb: ``smiling``, and not ``ring``."""
+    forms = plain_forms(word.text) if word.text.endswith("ing") else ()
+    return any(len(form) > 2 and known.is_action((ast.Name((form,), word.span),)) for form in forms)
+
+
+def _begins(after: Words, known: Known, third: bool | None = None) -> int | None:
+    """After how many words for the manner an action begins; None where none does. third: whether its verb is
+    in the third person, or a participle; None for either"""
+    at = 0
+    while at + 1 < len(after) and (says_how(after[at]) or after[at].text == "then"):
+        at += 1
+    if not after or after[at].text in ARTICLES or known.is_name(after[at]):
+        return None
+    if third is not None and third != is_third(after[at]) and not _is_ing(after[at], known):
+        return None
+    rest = (after[at], *(word for word in after[at + 1 :] if word.text not in ARTICLES))
+    if {rest[0].text, *plain_forms(rest[0].text)} & {*AUXILIARIES}:
+        rest = rest[2:] if rest[1:2] != () and rest[1].text == "to" else rest[1:]
+    if [word.text for word in rest[1:2]] == ["on"] and rest[2:] != () and rest[2].text.endswith("ing"):
+        rest = rest[2:]  # `goes on crying`
+    sizes = range(1, min(_MOST_ACTION_WORDS, len(rest)) + 1)
+    apart = any(known.is_action((rest[0], word)) for word in rest[1:4] if word.text in phrases.PARTICLES)
+    return at if apart or any(known.is_action(rest[:size]) for size in sizes) else None
+
+
+def _somebody_acts(after: Words, known: Known) -> int:
+    """How many words name who does something by some; 0 where nobody does, or nothing."""
+    count = _subject(after, known)
+    if count:
+        does = _does(after, count)
+        unknown = bool(does) and is_third(does[0]) and not {*plain_forms(does[0].text)} & {*AUXILIARIES, "ha"}
+        named = after[0].text in known.named
+        return count if _begins(does, known) is not None or (named and unknown and len(does) > 0) else 0
+    slip = bool(after) and any(is_slip(after[0].text, name) for name in known.named)
+    return 1 if slip and _begins(after[1:], known, True) is not None else 0
+
+
+# --- what stands before who acts ---------------------------------------------------------
+
+
+def _begun(said: Words, known: Known) -> Sentence | None:
+    """``while ben cooks, anna reads``; None for what begins with who acts."""
+    if not said or _subject(said, known) or said[0].text == COMMA:
+        return None
+    first, rest = said[0], said[1:]
+    comma = next((k for k, word in enumerate(said) if word.text == COMMA), len(said))
+    clause, main = said[1:comma], said[comma + 1 :]
+    alone = rest[1:] if rest[:1] != () and rest[0].text == COMMA else rest
+    if says_how(first) or fold(first.text) in MANNERS:
+        who = _subject(alone, known)
+        if not who:
+            return None
+        how = (first,) if fold(first.text) in MANNERS else ()
+        return sentence((*alone[:who], *how, *alone[who:]), known)  # `suddenly carl jumps up`
+    if known.is_name(first) or not _subject(main, known):
+        return None
+    of_main = sentence(main, known)
+    acts = bool(_somebody_acts(clause, known))
+    if first.text in ("when", "after", "once", "before", "while", "as") and acts:
+        does = sentence(clause, known)
+        left = (*of_main.left_out, *does.left_out)
+        if first.text == "before":
+            return Sentence((*of_main.parts, *does.parts), left)
+        if first.text not in ("while", "as"):  # one thing is what the other waits for
+            return Sentence((*does.parts, *of_main.parts), left)
+        if _is_other(main, clause, known):
+            one, *others = of_main.parts
+            while_ = (replace(part, meanwhile=True) for part in does.parts)
+            return Sentence((one, *while_, *others), left)
+    if first.text in (*_CLAUSES, "after", "before", "once"):
+        return replace(of_main, left_out=(said[:comma], *of_main.left_out))
+    if first.text in PREPOSITIONS or _is_ing(first, known):  # `on the sofa, ben sleeps`; `smiling, anna nods`
+        joint = () if first.text in PREPOSITIONS else (ast.Name(("and",), said[comma].span),)
+        one, *others = of_main.parts
+        return replace(of_main, parts=(Part((*one.words, *joint, *said[:comma])), *others))
+    return None
+
+
+# --- whose something is ------------------------------------------------------------------
 
 
 def _owned(said: Words, known: Known) -> Words:
@@ -90,6 +207,7 @@ def _owned(said: Words, known: Known) -> Words:
     at = 0
     while at < len(said):
         word, after = said[at], said[at + 1 :]
+        acts = all(each.text in (*known.named, "and", COMMA) for each in out)  # who acts is named here
         who = owner(word.text) or (OWNERS.get(word.text, "") if at == 0 else "")
         if not who:
             out.append(word)
@@ -104,10 +222,13 @@ def _owned(said: Words, known: Known) -> Words:
             if each.text in BODY:
                 break
         of_body = group != () and group[-1].text in BODY
-        if at == 0:  # `anna's hands tremble`
-            out.append(name if of_body or owner(word.text) else word)
-            at += 1 + (len(group) if of_body else 0)
-        elif who in known.named and of_body:
+        if acts:
+            verb = after[len(group) :][:1]
+            forms = {verb[0].text, *plain_forms(verb[0].text)} if verb and of_body else set()
+            moves = bool(forms & {*_OF_A_BODY})  # `anna's hands tremble`
+            out.append(name if moves else word)
+            at += 1 + (len(group) if moves else 0)
+        elif of_body:
             out += [name, ast.Name(("by",), word.span), group[-1]]
             at += 1 + len(group)
         elif who in known.named and after and known.is_name(ast.Name((who, after[0].text), word.span)):
@@ -121,16 +242,20 @@ def _owned(said: Words, known: Known) -> Words:
     return tuple(out)
 
 
+# --- commas ------------------------------------------------------------------------------
+
+
 def _with_and(said: Words, known: Known) -> tuple[Words, tuple[Words, ...]]:
     """With ``and`` for the commas, and before the participles, after which something more is done; and what
     else stands after commas and names nobody and nothing."""
+    third = _is_prose(said, known)
     out: list[ast.Name] = []
     left: list[Words] = []
     at = 0
     while at < len(said):
         word = said[at]
         if word.text != COMMA:
-            if _is_participle(tuple(out), said[at:], known):
+            if _is_done_besides(tuple(out), said[at:], known):
                 out.append(ast.Name(("and",), word.span))
             out.append(word)
             at += 1
@@ -140,7 +265,7 @@ def _with_and(said: Words, known: Known) -> tuple[Words, tuple[Words, ...]]:
             at += 1
         if not out or at == len(said):
             continue
-        joins, part = _after_comma(tuple(out), said[at:], known)
+        joins, part = _after_comma(tuple(out), said[at:], known, third)
         if joins:
             out.append(ast.Name(("and",), word.span))
         elif part:
@@ -149,12 +274,15 @@ def _with_and(said: Words, known: Known) -> tuple[Words, tuple[Words, ...]]:
     return tuple(out), tuple(left)
 
 
-def _after_comma(before: Words, after: Words, known: Known) -> tuple[bool, Words]:
+def _after_comma(before: Words, after: Words, known: Known, third: bool) -> tuple[bool, Words]:
     """Whether an ``and`` belongs where a comma stands; else what after it says nothing."""
-    subjects = before[-1].text in known.named and (len(before) == 1 or before[-2].text in _BESIDES)
-    who, *does = after[1:] if after[0].text == "then" else after
-    other = who.text in known.named or who.text in ONE
-    acts = _begins(tuple(does) if other else after, known) is not None
+    subjects = before[-1].text in known.named and (
+        len(before) == 1 or before[-2].text in (*_MEANWHILE, "then")
+    )
+    does = after[1:] if after[0].text == "then" else after
+    other = bool(_somebody_acts(does, known)) or (subjects and bool(_subject(does, known)))
+    verb = third and phrases.looks_like_a_verb(does, known.is_thing)
+    acts = verb or (bool(does) and _begins(does, known, third) is not None)
     if before[-1].text == "and" or (subjects and not other):
         if acts:
             return False, ()  # `anna, annoyed, sits down`: it comes after the second
@@ -162,105 +290,134 @@ def _after_comma(before: Words, after: Words, known: Known) -> tuple[bool, Words
         return True, ()
     end = next((k for k, each in enumerate(after) if each.text == COMMA), len(after))
     part, inserted = after[:end], subjects and end < len(after)
+    bare = [word for word in part if word.text not in ARTICLES]
+    if len(bare) == 1 and (fold(bare[0].text) in MANNERS or known.is_name(bare[0])):
+        return False, ()  # `walk, counter`; `, nervously, `
     feels = part[-1].text.endswith(("ed", "ing")) or says_how(part[-1])  # `, puzzled`
-    names = (len(part) == 1 and not feels) or any(known.is_name(each) for each in part)  # `walk, counter`
-    return False, part if inserted or not names else ()
+    return False, () if len(bare) == 1 and not feels and not inserted else part
 
 
-def _is_participle(before: Words, after: Words, known: Known) -> bool:
+def _is_done_besides(before: Words, after: Words, known: Known) -> bool:
     """Whether something more is done from here on, as in ``sits by the window reading a book``."""
-    word, last = after[0].text, before[-1].text if before else ""
-    if len(before) < 3 or not word.endswith("ing") or known.is_name(after[0]):
+    word, last = after[0], before[-1].text if before else ""
+    who = _subject(before, known)
+    if len(before) < who + 2 or not _is_ing(word, known) or known.is_name(word):
         return False
-    no_verb = not any(known.is_action((each,)) for each in before[1:-1])
     aux = {last, *plain_forms(last)} & {*AUXILIARIES, "go", "come", "stop"}
     belongs = (*ARTICLES, *PREPOSITIONS, *_CLAUSES, "and", COMMA)  # `the blinking light`
-    if no_verb or aux or last in belongs or any(each.text == "with" for each in before):
+    if aux or last in belongs or any(each.text == "with" for each in before) or _is_of_another(before, known):
         return False
-    return _begins(after, known) == 0 and not any(
-        known.is_action((*before[at:], *after[:1])) for at in range(1, len(before))
-    )
+    whole = (known.is_action((*before[at:], word)) for at in range(who, len(before)))
+    return _begins(after, known) == 0 and not any(whole)
 
 
-def _begins(after: Words, known: Known) -> int | None:
-    """After how many words for the manner an action begins; None where none does."""
-    at = 0
-    while at + 1 < len(after) and (says_how(after[at]) or after[at].text == "then"):
-        at += 1
-    if not after or known.is_name(after[at]):
-        return None
-    rest = tuple(word for word in after[at:] if word.text not in ARTICLES) or after[at:]
-    if {rest[0].text, *plain_forms(rest[0].text)} & {*AUXILIARIES}:
-        rest = rest[2:] if rest[1:2] != () and rest[1].text == "to" else rest[1:]
-    sizes = range(1, min(_MOST_ACTION_WORDS, len(rest)) + 1)
-    return at if any(known.is_action(rest[:size]) for size in sizes) else None
+def _is_of_another(before: Words, known: Known) -> bool:
+    """Whether what is done after some words is done by whom or by what they end in: ``watches ben …``."""
+    verb = before[_subject(before, known)]
+    perceives = {verb.text, *plain_forms(verb.text)} & _PERCEIVES
+    return before[-1].text in (*known.named, "him", "them", "her") or bool(perceives)
 
 
-def _without_clause(said: Words, known: Known) -> tuple[Words, Words, Words]:
-    """Who does what; what somebody else does, after a ``then`` if they do it later; and the words of a clause
-    of which nothing shows."""
-    for k in range(2, len(said)):
+# --- clauses -----------------------------------------------------------------------------
+
+
+def _parts(said: Words, known: Known) -> tuple[tuple[Part, ...], tuple[Words, ...]]:
+    """Who does what, one part for all that the same people do one after the other; and the clauses of which
+    nothing shows."""
+    left: list[Words] = []
+    who, third = _subject(said, known), _is_prose(said, known)
+    k = who + 1
+    while k < len(said):
         word, after = said[k], said[k + 1 :]
-        verb = next((at for at in range(1, k) if known.is_action(said[at : at + 1])), k)
-        if known.is_name(word) or any(known.is_action(said[at : k + 1]) for at in range(1, k)):
+        whole = any(known.is_action(said[at : k + 1]) for at in range(max(who, k - 3), k))
+        if known.is_name(word) or whole:
+            k += 1
             continue
-        if word.text in ("and", "then") and verb < k and _all_then(after, known):
-            return said[:k], (ast.Name(("then",), word.span), *after), ()
-        if verb + 1 < k and _is_let(said, k, known):
-            return said[:k], (), said[k:]
-        if word.text in _BESIDES and (verb < k or k > 3) and _acts_besides(said, after, known):
-            plural = (
-                said[0].text in (*BOTH, *ALL) and word.text == "and"
-            )  # who does both, one after the other
-            then = ast.Name(("then",), word.span)
-            return said[:k], (then, *after) if plural or word.text == "then" else after, ()
-        if word.text == "before" and after and after[0].text.endswith("ing") and _begins(after, known) == 0:
-            return (*said[:k], ast.Name(("and",), word.span), *after), (), ()
-        if word.text in _CLAUSES or (word.text == "to" and _is_purpose(said, k, known)):
-            return said[:k], (), said[k:]
-    return said, (), ()
+        does = after[1:] if after[:1] != () and after[0].text == "then" else after
+        if word.text in (*_MEANWHILE, *_LATER) and _somebody_acts(does, known):
+            joint = "then" if does is not after else word.text
+            meanwhile = joint in _MEANWHILE and _is_other(said, does, known)
+            if joint == "and" and _is_done_to(said[:k], does, known):
+                meanwhile = False  # `gives the cup to ben and he drinks`
+            if meanwhile or joint in _LATER:
+                others, more = _parts(does, known)
+                first = replace(others[0], meanwhile=meanwhile)
+                return (Part(said[:k]), first, *others[1:]), (*left, *more)
+        if word.text == "before" and after and _is_ing(after[0], known):
+            said = (*said[:k], ast.Name(("and",), word.span), *after)
+            continue
+        after_ing = word.text == "after" and bool(after) and _is_ing(after[0], known)
+        thought = word.text == "that" and bool(_subject(after, known))  # `the letter that she wrote`
+        purpose = word.text == "to" and _is_purpose(said, k, known)
+        if word.text in _CLAUSES or after_ing or thought or purpose or _is_let(said, k, known, third):
+            end = _clause_end(said, k, known, third)
+            left.append(said[k:end])
+            said = (*said[:k], *said[end:])
+            continue
+        k += 1
+    return (Part(said),), tuple(left)
 
 
-def _all_then(after: Words, known: Known) -> bool:
-    """Whether words say what ``they`` do next."""
-    return len(after) > 1 and after[0].text in BOTH and _begins(after[1:], known) is not None
+def _clause_end(said: Words, begin: int, known: Known, third: bool) -> int:
+    """Where a clause ends: before the next ``and`` or ``then`` after which something is done."""
+    for k in range(begin + 1, len(said) - 1):
+        if said[k].text not in _LATER:
+            continue
+        does = said[k + 2 :] if said[k + 1].text == "then" else said[k + 1 :]
+        if does and (_somebody_acts(does, known) or _begins(does, known, third) is not None):
+            return k
+    return len(said)
 
 
-def _is_let(said: Words, at: int, known: Known) -> bool:
-    """Whether what somebody does begins at a place whom something is done to: ``helps ben sit down``."""
-    word, before = said[at], said[at - 1].text
-    whom = before in known.named or before in ("him", "them")
-    verbs = any({each.text, *plain_forms(each.text)} & {*GIVING} for each in said[1:at])
-    if at < 3 or not whom or verbs or word.text.endswith("s") or word.text in PREPOSITIONS:
+def _is_other(said: Words, after: Words, known: Known) -> bool:
+    """Whether somebody else than who acts is at the beginning of some words, so that both act at once."""
+    acting, others = _subjects(said, known), _subjects(after, known)
+    if not others:
+        return True  # a slip of the finger, which is told
+    if any(who in (*BOTH, *ALL, "they all") for who in (*acting, *others)):
         return False
-    return not says_how(word) and _begins(said[at:], known) == 0
+    if others[0] in ONE or acting[0] in ONE:
+        pronoun, who = (others[0], acting[0]) if others[0] in ONE else (acting[0], others[0])
+        return pronoun != who if who in ONE else not known.may_be(pronoun, who)
+    return not set(acting) & set(others)
 
 
-def _acts_besides(said: Words, after: Words, known: Known) -> bool:
-    """Whether somebody else than who acts does something by the words after ``while``."""
-    after = after[1:] if after[:1] != () and after[0].text == "then" else after
-    if len(after) < 2:
+def _is_done_to(before: Words, after: Words, known: Known) -> bool:
+    """Whether somebody acts to whom something has just been done."""
+    named = [word.text for word in before[_subject(before, known) :] if word.text in known.named]
+    others = _subjects(after, known)
+    return any(who in named or (who in ONE and known.may_be(who, name)) for who in others for name in named)
+
+
+def _is_let(said: Words, at: int, known: Known, third: bool) -> bool:
+    """Whether what somebody else does begins at a place: ``helps ben sit down``, ``watches ben cooking``."""
+    word = said[at]
+    joined = said[at - 1].text in (*_LATER, COMMA)
+    if at < _subject(said, known) + 2 or not _is_of_another(said[:at], known) or not third or joined:
         return False
-    who = after[0].text
-    if who in known.named:
-        other = all(word.text != who for word in said[:1])
-    else:
-        other = who in ONE and said[0].text in known.named and not known.may_be(who, said[0].text)
-    return other and _begins(after[1:], known) is not None
+    if _is_ing(word, known):
+        return _begins(said[at:], known) == 0
+    whom = said[at - 1].text in (*known.named, "him", "them")
+    if not whom or is_third(word) or word.text in PREPOSITIONS or says_how(word):
+        return False
+    return _begins(said[at:], known) == 0
 
 
 def _is_purpose(said: Words, at: int, known: Known) -> bool:
     """Whether ``to`` at a place says what something is done for, as in ``stops to catch his breath``."""
     after = said[at + 1 :]
-    if not after or after[0].text.endswith("s") or _begins(after, known) != 0:
+    if not after or is_third(after[0]) or _begins(after, known) != 0:
         return False
     joint = tuple(word.text for word in after[:2])
     if len(joint) == 2 and any(
         known.is_name(ast.Name((mark.join(joint),), after[0].span)) for mark in ("_", "-")
     ):
         return False  # `to the dance floor`
-    done, last = said[1:at], said[at - 1].text
-    if phrases.about_to(said[1:], known.is_action, known.is_name):
+    begin = max((k + 1 for k in range(at) if said[k].text in _LATER), default=_subject(said, known))
+    done, last = said[begin:at], said[at - 1].text
+    if phrases.about_to(done, known.is_action, known.is_name) or phrases.about_to(
+        said[begin:], known.is_action, known.is_name
+    ):
         return False
     return not {last, *plain_forms(last)} & {*AUXILIARIES} and any(
         known.is_action(done[:size]) for size in range(1, len(done) + 1)

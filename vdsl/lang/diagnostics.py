@@ -122,6 +122,17 @@ def nearest(word: str, candidates: Iterable[str]) -> str | None:
     return _nearest(word, tuple(candidates))
 
 
+def is_slip(word: str, name: str) -> bool:
+    """Whether a word is a name but for a letter more, less or other, or two that changed places."""
+    if abs(len(word) - len(name)) > 1 or len(word) < 3:
+        return False
+    short = min(len(word), len(name))
+    same = next((k for k in range(short) if word[k] != name[k]), short)
+    a, b = word[same:], name[same:]
+    swapped = len(a) > 1 and a[:2] == b[:2][::-1] and a[2:] == b[2:]
+    return a[1:] == b[1:] or a == b[1:] or a[1:] == b or swapped
+
+
 @lru_cache(maxsize=1024)
 def _nearest(word: str, candidates: tuple[str, ...]) -> str | None:
     folded = {_fold(c): c for c in candidates}

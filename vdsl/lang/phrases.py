@@ -153,7 +153,8 @@ class Known:
     named: people of the storyboard; them: who, besides the one who acts, a pronoun means, or ""; own: whether
     it may mean who acts; it: the parts of the name of what was spoken of last, or (); many: whether it was
     several; is_action: whether all of some words name an action; is_name: whether a word is somebody's or
-    something's in the scene; may_be: whether a pronoun may mean somebody
+    something's in the scene; is_thing: whether it is one for a prop; may_be: whether a pronoun may mean
+    somebody
     """
 
     named: Sequence[str]
@@ -163,15 +164,16 @@ class Known:
     many: bool
     is_action: Callable[[Words], bool]
     is_name: Callable[[ast.Name], bool]
+    is_thing: Callable[[ast.Name], bool]
     may_be: Callable[[str, str], bool]
 
 
 def plain(said: Words, known: Known) -> Words:
     """The words of a beat without those that say nothing, with all words of a verb side by side."""
     character, rest = said[:1], _without(_with_names(_without_how(said[1:], known), known), known.named)
-    while (
-        len(rest) > 1 and says_how(rest[0]) and not known.is_action(rest[:1]) and not known.is_name(rest[0])
-    ):
+    while len(rest) > 1 and says_how(rest[0]) and not known.is_name(rest[0]):
+        if any(known.is_action(rest[:size]) for size in (1, 2, 3)):  # `back away`
+            break
         rest = rest[1:]  # `secretly pulls`
     rest = about_to(rest, known.is_action, known.is_name) or rest
     rest = _one_each(_without_auxiliary(rest, known.is_action), known.is_action)
@@ -234,7 +236,7 @@ def one_after_the_other(
         at += 2
     who, rest = said[:at], said[at:]
     verb = next((word for word in rest if not says_how(word)), None)
-    third = verb is not None and _is_third(verb)
+    third = verb is not None and is_third(verb)
 
     def begins(k: int) -> int | None:
         """Where a verb in the form of the first one stands after the ``and`` at ``k``."""
@@ -242,8 +244,8 @@ def one_after_the_other(
         while at + 1 < len(rest) and says_how(rest[at]):
             at += 1
         after = rest[at:]
-        alike = third == _is_third(after[0]) or rest[k].span.text != "and" if after else False
-        if not alike or is_name(after[0]):
+        alike = third == is_third(after[0]) or rest[k].span.text != "and" if after else False
+        if not alike or is_name(after[0]) or after[0].text in ARTICLES:
             return None
         if any(is_action(rest[: at + size]) for size in (1, 2) if at + size <= len(rest)):
             return None  # `trips and falls` is one action
@@ -257,27 +259,27 @@ def one_after_the_other(
         after = _without_auxiliary(tuple(w for w in after if w.text not in ARTICLES) or after, is_action)
         apart = any(is_action((after[0], word)) for word in after[1:4] if word.text in PARTICLES)
         known = apart or any(is_action(after[:size]) for size in range(1, min(3, len(after)) + 1))
-        return at if known or _looks_like_a_verb(rest[at:], is_thing) else None
+        return at if known or looks_like_a_verb(rest[at:], is_thing) else None
 
-    cuts = [
-        (k, verb_at)
-        for k, word in enumerate(rest)
-        if k and (word.text == "and" or (word.text == "then" and rest[k - 1].text != "and"))
-        if (verb_at := begins(k))
-    ]
+    cuts: list[tuple[int, int]] = []
+    for k, word in enumerate(rest):
+        joins = word.text == "and" or (word.text == "then" and rest[k - 1].text != "and")
+        verb_at = begins(k) if k and joins and (not cuts or k > cuts[-1][1]) else None
+        if verb_at:
+            cuts.append((k, verb_at))
     ends = zip([0, *(verb_at for _, verb_at in cuts)], [*(k for k, _ in cuts), len(rest)], strict=True)
     return who, tuple(rest[begin:end] for begin, end in ends)
 
 
-def _looks_like_a_verb(said: Words, is_thing: Callable[[ast.Name], bool]) -> bool:
+def looks_like_a_verb(said: Words, is_thing: Callable[[ast.Name], bool]) -> bool:
     """Whether words begin with a verb in the third person that nobody knows: ``whirls around``."""
-    if len(said) < 2 or not _is_third(said[0]) or any(map(is_thing, (said[0], *of_several(said[0])))):
+    if len(said) < 2 or not is_third(said[0]) or any(map(is_thing, (said[0], *of_several(said[0])))):
         return False
     follows = (*ARTICLES, *PARTICLES, *PREPOSITIONS, *_OBJECTS, "it")
     return said[1].text in follows or said[1].text.endswith("self")
 
 
-def _is_third(verb: ast.Name) -> bool:
+def is_third(verb: ast.Name) -> bool:
     """Whether a verb is in the third person: ``walks``, and not ``kiss``."""
     return verb.text.endswith("s") and not verb.text.endswith("ss")
 

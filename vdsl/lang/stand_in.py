@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from .bringing import carry
 from .catalog import CatalogLike
-from .diagnostics import Report
+from .diagnostics import Report, is_slip
 from .ir import Carried, Target
 from .source import Span
 
@@ -55,14 +55,3 @@ def stand_in(
         help=f"`prop {word} {{ box (20cm, 12cm, 9cm); grip (0, 0, 9cm) }}` says what it looks like",
     )
     return carry(Carried(who, word, STAND_IN, about=True), scene, span)
-
-
-def is_slip(word: str, name: str) -> bool:
-    """Whether a word is a name but for a letter more, less or other, or two that changed places."""
-    if abs(len(word) - len(name)) > 1 or len(word) < 3:
-        return False
-    short = min(len(word), len(name))
-    same = next((k for k in range(short) if word[k] != name[k]), short)
-    a, b = word[same:], name[same:]
-    swapped = len(a) > 1 and a[:2] == b[:2][::-1] and a[2:] == b[2:]
-    return a[1:] == b[1:] or a == b[1:] or a[1:] == b or swapped

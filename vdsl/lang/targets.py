@@ -13,11 +13,10 @@ from . import ast, phrases, words
 from .bringing import carried_called
 from .catalog import CatalogLike
 from .definitions.types import DefinitionBase
-from .diagnostics import Report, listing, nearest
+from .diagnostics import Report, is_slip, listing, nearest
 from .ir import Target
 from .scope import Scope
 from .source import Span
-from .stand_in import is_slip
 
 KIND_WORDS = {"place": "a place", "object": "a thing", "character": "someone"}
 
@@ -66,19 +65,22 @@ class TargetReader:
         group = list(rest[at + 1 : end])
         if not group or not still or getattr(definition, "group", "") not in ("going", "posture"):
             return rest, None
-        group = self._without_adjectives(group, True)
-        word = "_".join(name.text for name in group)
-        if self.bring is None or self.who is None or not carried_called(word, self.catalog):
-            return rest, None
-        span = group[0].span.to(group[-1].span)
-        own = self.scope.carried_by(self.who, word) if self.scope is not None else None
+        whole, group = rest[at].span.to(group[-1].span), self._without_adjectives(group, True)
+        word, span = "_".join(name.text for name in group), group[0].span.to(group[-1].span)
         before = {id(name): last.text for last, name in pairwise(self.said)}
-        if own is None and before.get(id(rest[at + 1])) == "the" and not self._is_nowhere(group):
-            return rest, None  # it is somewhere in the scene: nobody has it yet
+        own = self.scope.carried_by(self.who, word) if self.scope is not None and self.who else None
+        there = own is None and not self._is_nowhere(group) and group[0].text not in self.characters
+        if self.bring is None or self.who is None or not (there or carried_called(word, self.catalog)):
+            return rest, None
+        thing = None
+        if there and before.get(id(rest[at + 1])) == "the":  # it is somewhere in the scene: nobody has it yet
+            self._leave_out(whole, f"nobody has it yet; `({self.who} picks up {word})` before does it")
+        else:
+            thing = self.bring(word, span, self.who)
         rest = rest[:at] + rest[end:]
         while rest and rest[-1].text in words.PREPOSITIONS and not self.is_name(rest[-1]):
             rest = rest[:-1]  # `hurries in`
-        return rest, self.bring(word, span, self.who)
+        return rest, thing
 
     def named(
         self, rest: tuple[ast.Name, ...], definition: DefinitionBase, verb: ast.Name
@@ -125,7 +127,7 @@ class TargetReader:
         while groups and id(groups[-1][0]) in before:
             link = before[id(groups[-1][0])].text
             loose = link in words.BESIDES and self._is_nothing(groups[-1])
-            loose = loose or (link in words.WHERE and self._is_wrongly_somebody(groups, definition))
+            loose = loose or (link in words.BY_SOMEBODY and self._is_wrongly_somebody(groups, definition))
             if not loose and (len(groups) <= most or (link == "with" and not self.prose)):
                 break
             *groups, last = groups
@@ -244,7 +246,7 @@ class TargetReader:
             and not close
             and self.stand_in is not None
             and self.who is not None
-            and all(self._is_nowhere([name]) for name in group)
+            and all(self._is_nowhere([name]) and len(name.parts) == 1 for name in group)
             and group[-1].text not in phrases.BODY
             and not any(is_slip(group[-1].text, name) for name in known)
         )

@@ -193,10 +193,15 @@ WHERE = (
 )  # fmt: skip
 #: What they begin is hardly ever what is done, but whence, why or by what.
 BESIDES = ("from", "for", "about", "of", "with")
+#: What is done there may be done near somebody, though it is not done to them.
+BY_SOMEBODY = ("beside", "near", "by", "behind", "before", "opposite", "around", "between")
 #: What they begin is where something ends up: that would be seen.
 WHITHER = ("to", "into", "onto", "toward", "towards")
 #: Words before a name that say nothing here: articles, and whose it is.
-ARTICLES = ("the", "a", "an", "some", "her", "his", "their", "its", "my", "your", "our")
+ARTICLES = (
+    "the", "a", "an", "some", "her", "his", "their", "its", "my", "your", "our", "this", "that", "these",
+    "those",
+)  # fmt: skip
 
 
 def plain_forms(verb: str) -> tuple[str, ...]:

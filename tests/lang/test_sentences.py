@@ -305,7 +305,7 @@ def test_any_words_are_read_or_told() -> None:
     rng = random.Random(7)
     for _ in range(150):
         said = [
-            rng.choice(("anna", "she", "they")),
+            rng.choice(("anna", "she", "they", "the", "when")),
             *(rng.choice(vocabulary) for _ in range(rng.randint(0, 8))),
         ]
         read(f"({' '.join(said)})")

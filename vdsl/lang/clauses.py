@@ -372,7 +372,7 @@ def _clause_end(said: Words, begin: int, known: Known, third: bool) -> int:
 def _is_other(said: Words, after: Words, known: Known) -> bool:
     """Whether somebody else than who acts is at the beginning of some words, so that both act at once."""
     acting, others = _subjects(said, known), _subjects(after, known)
-    if not others:
+    if not others or not acting:
         return True  # a slip of the finger, which is told
     if any(who in (*BOTH, *ALL, "they all") for who in (*acting, *others)):
         return False

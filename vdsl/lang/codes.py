@@ -504,7 +504,8 @@ CODES: dict[str, Code] = {
     "VDS082": Code(
         "a word that does not show",
         "A thing looks as it is defined. Words before its name that are no part of it say nothing to a picture, and "
-        "are left out.",
+        "are left out; so are clauses of a sentence that say why, when or like what, and where something is done "
+        "that takes no such place.",
         "(anna walk old table)",
         "(anna walk table)",
     ),

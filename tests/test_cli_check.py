@@ -65,12 +65,12 @@ def test_five_mistakes_are_all_told_and_nothing_is_written(script: Path) -> None
 
 
 def test_the_underline_is_under_the_span() -> None:
-    _, report = parse(Source("x.vds", '(猫é walk, door) say "x"\n'))
+    _, report = parse(Source("x.vds", '(猫é walk / door) say "x"\n'))
     lines = as_text(report.diagnostics).split("\n")
-    assert lines[:2] == ["error[VDS001]: this line does not read", " --> x.vds:1:9"]
-    assert lines[2] == '1 | (猫é walk, door) say "x"'
+    assert lines[:2] == ["error[VDS001]: this line does not read", " --> x.vds:1:10"]
+    assert lines[2] == '1 | (猫é walk / door) say "x"'
     # The cat takes two columns of a terminal.
-    assert lines[3] == "  |          ^ no commas between the words of an action"
+    assert lines[3] == "  |           ^ the camera stands outside of the parentheses"
 
 
 def test_json_has_every_place(script: Path) -> None:

@@ -31,12 +31,12 @@ storyboard "Two and one"
 size 64x36
 proposals 16
 takes 2
+seed 3
 character anna = woman
 character ben = man
 scene kitchen = apartment.kitchen
 anna at counter
 ben at chair_2 sitting
-
 (anna nod) / (static close-up eye-level) 1s
 (anna nod) / (static close-up eye-level) 1s
 dissolve 4f

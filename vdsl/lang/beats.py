@@ -85,16 +85,12 @@ class BeatReader:
         named = self.targets.named(rest, definition, node.words[used])
         if named is None or character is None:
             return None
-        up = used > 1 and node.words[used].text == "up"  # `grabs ben`, and not `picks up ben`
-        if not up:
-            action, definition = self._done_to(action, definition, named)
         whom = spoken_of if possessed else mentions.other()
-        found = self._unsaid(node, used, definition, rest, named, whom if possessed else "")
-        if found is None:
+        named = named or self._unsaid(node, used, definition, rest, whom if possessed else "")
+        if named is None:
             return None
-        if not up:
-            action, definition = self._done_to(action, definition, found)
-        named = found
+        if not (used > 1 and node.words[used].text == "up"):  # `grabs ben`, and not `picks up ben`
+            action, definition = self._done_to(action, definition, named)
         if not named and whom and self.takes_somebody(action):
             named = [Target("character", (whom,), whom, node.span, implied=True)]
         thing = next((t for t in named if t.kind == "object" and not t.implied), in_hand)
@@ -127,13 +123,10 @@ class BeatReader:
         used: int,
         definition: DefinitionBase,
         rest: tuple[ast.Name, ...],
-        named: list[Target],
         whose: str,
     ) -> list[Target] | None:
-        """The targets, or where none is named what goes without saying; None where it was reported that there
-        is nothing. whose: whose it is, besides who acts, or \"\""""
-        if named:
-            return named
+        """What it is done to where that goes without saying; None where it was reported that there is
+        nothing. whose: whose it is, besides who acts, or nobody's"""
         if not self._is_of_a_body(node, used):
             otherwise = getattr(definition, "otherwise", ()) if self.scope is not None else ()
             unsaid = (self.scope.first(word, node.span) for word in otherwise if self.scope is not None)
@@ -149,7 +142,6 @@ class BeatReader:
 
     def lines(self, node: ast.StoryNode) -> tuple[ast.StoryNode, ...]:
         """What a line says as lines in which everybody does one thing, ``while`` as at the same time."""
-        lines: list[ast.StoryNode] = []
         beats: list[ast.BeatNode] = []
         later: list[ast.StoryNode] = []
         besides: list[ast.BeatNode] = []
@@ -191,9 +183,7 @@ class BeatReader:
         if len(node.beats) != 1:
             return (node,)
         said = node.beats[0].words
-        who, does = phrases.one_after_the_other(
-            said, self.targets.is_name, self.targets.is_thing, self._is_action
-        )
+        who, does = clauses.one_after_the_other(said, self._known())
         if len(does) == 1:
             return (node,)
         named, lines = who[0].span.to(who[-1].span), []

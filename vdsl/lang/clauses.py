@@ -78,6 +78,42 @@ def owner(word: str) -> str:
     return word[:-2] if word.endswith(("'s", "’s")) else ""
 
 
+def one_after_the_other(said: Words, known: Known) -> tuple[Words, tuple[Words, ...]]:
+    """Who acts, and what they do one after the other: ``sits down`` and ``reads`` of ``ben sits down and
+    reads``."""
+    count = max(1, _subject(said, known))
+    who, rest = said[:count], said[count:]
+    third = _is_prose(said, known)
+    cuts: list[tuple[int, int]] = []
+    for k, word in enumerate(rest):
+        joins = word.text == "and" or (word.text == "then" and rest[k - 1].text != "and")
+        verb_at = _goes_on(rest, k, known, third) if k and joins and (not cuts or k > cuts[-1][1]) else None
+        if verb_at:
+            cuts.append((k, verb_at))
+    ends = zip([0, *(verb_at for _, verb_at in cuts)], [*(k for k, _ in cuts), len(rest)], strict=True)
+    return who, tuple(rest[begin:end] for begin, end in ends)
+
+
+def _goes_on(rest: Words, k: int, known: Known, third: bool) -> int | None:
+    """Where a verb in the form of the first one stands after the ``and`` at ``k``; None for nowhere."""
+    after = rest[k + 1 :]
+    at = next((n for n, word in enumerate(after) if not says_how(word)), len(after) - 1)
+    found = _begins(after, known, third if rest[k].span.text == "and" else None)
+    if found is None and (not third or not phrases.looks_like_a_verb(after[at:], known.is_thing)):
+        return None
+    at = k + 1 + (at if found is None else found)
+    if any(known.is_action(rest[: at + size]) for size in (1, 2) if at + size <= len(rest)):
+        return None  # `trips and falls` is one action
+    object_before = k > 1 and rest[k - 1].text not in phrases.PARTICLES and not says_how(rest[k - 1])
+    if (
+        object_before
+        and at + 1 == len(rest)
+        and any(map(known.is_thing, (rest[at], *phrases.of_several(rest[at]))))
+    ):
+        return None  # `the hat and box`
+    return at
+
+
 # --- who acts, and verbs -----------------------------------------------------------------
 
 

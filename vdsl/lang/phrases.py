@@ -223,54 +223,6 @@ def _who(word: ast.Name, mentions: Mentions) -> ast.Name:
     return ast.Name((name,), word.span) if name else word
 
 
-def one_after_the_other(
-    said: Words,
-    is_name: Callable[[ast.Name], bool],
-    is_thing: Callable[[ast.Name], bool],
-    is_action: Callable[[Words], bool],
-) -> tuple[Words, tuple[Words, ...]]:
-    """Who acts, and what they do one after the other: ``sits down`` and ``reads`` of ``ben sits down and
-    reads``. is_thing: whether a word is also one for a thing"""
-    at = 2 if [word.text for word in said[:2]] == ["they", "all"] else 1
-    while at + 1 < len(said) and said[at].text == "and":
-        at += 2
-    who, rest = said[:at], said[at:]
-    verb = next((word for word in rest if not says_how(word)), None)
-    third = verb is not None and is_third(verb)
-
-    def begins(k: int) -> int | None:
-        """Where a verb in the form of the first one stands after the ``and`` at ``k``."""
-        at = k + 1
-        while at + 1 < len(rest) and says_how(rest[at]):
-            at += 1
-        after = rest[at:]
-        alike = third == is_third(after[0]) or rest[k].span.text != "and" if after else False
-        if not alike or is_name(after[0]) or after[0].text in ARTICLES:
-            return None
-        if any(is_action(rest[: at + size]) for size in (1, 2) if at + size <= len(rest)):
-            return None  # `trips and falls` is one action
-        object_before = k > 1 and rest[k - 1].text not in PARTICLES and not says_how(rest[k - 1])
-        if (
-            object_before
-            and len(after) == 1
-            and any(is_thing(word) for word in (*after, *of_several(after[0])))
-        ):
-            return None  # `the hat and box`
-        after = _without_auxiliary(tuple(w for w in after if w.text not in ARTICLES) or after, is_action)
-        apart = any(is_action((after[0], word)) for word in after[1:4] if word.text in PARTICLES)
-        known = apart or any(is_action(after[:size]) for size in range(1, min(3, len(after)) + 1))
-        return at if known or looks_like_a_verb(rest[at:], is_thing) else None
-
-    cuts: list[tuple[int, int]] = []
-    for k, word in enumerate(rest):
-        joins = word.text == "and" or (word.text == "then" and rest[k - 1].text != "and")
-        verb_at = begins(k) if k and joins and (not cuts or k > cuts[-1][1]) else None
-        if verb_at:
-            cuts.append((k, verb_at))
-    ends = zip([0, *(verb_at for _, verb_at in cuts)], [*(k for k, _ in cuts), len(rest)], strict=True)
-    return who, tuple(rest[begin:end] for begin, end in ends)
-
-
 def looks_like_a_verb(said: Words, is_thing: Callable[[ast.Name], bool]) -> bool:
     """Whether words begin with a verb in the third person that nobody knows: ``whirls around``."""
     if len(said) < 2 or not is_third(said[0]) or any(map(is_thing, (said[0], *of_several(said[0])))):

@@ -15,19 +15,18 @@ if TYPE_CHECKING:
 def beat_words(beat: Beat) -> str:
     """What somebody does, as the script says it: ``anna gives ben the cup``; of what no script says, ``anna
     give cup to ben``, without a target that goes without saying."""
+    if beat.said:
+        return beat.said
     said = beat.span.text.strip().removeprefix("(").removesuffix(")").split()
     if beat.who is not None:
         said = [*beat.who.text.split(), *said]
-    first, several = said[0].removesuffix(","), [word.removesuffix(",") for word in said[:6]]
+    first, *_ = several = [word.rstrip(",.:;!?…").casefold() for word in said[:6]]
+    name = beat.character.casefold()
     if first in ONE and said[1:2] != ["and"]:
         return " ".join((beat.character, *said[1:]))
     if first in OWNERS:
         return " ".join((f"{beat.character}'s", *said[1:]))  # `her hands tremble`
-    if (
-        (owner(first) or first) in (beat.character, *BOTH, *ALL)
-        or "and" in said[1:2]
-        or beat.character in several
-    ):
+    if (owner(first) or first) in (name, "the", *BOTH, *ALL) or "and" in said[1:2] or name in several:
         return " ".join(said)
     words = [beat.character, beat.action]
     if beat.target is not None and not beat.target.implied:

@@ -7,11 +7,12 @@ left are one or two targets, the second after a word like ``to`` or ``with``. A 
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 from runtime.motion.manner import MANNERS
 
-from . import ast, clauses, phrases, words
+from . import ast, capitals, clauses, nearly, phrases, words
 from .catalog import CatalogLike
 from .definitions.types import DefinitionBase
 from .diagnostics import Report, listing, nearest
@@ -53,9 +54,110 @@ class BeatReader:
         self._many = False  # whether it was several, so that `them` may be it
         self._actions = {words.fold(word): name for word, name in catalog.synonyms("action").items()}
         self._actions |= {words.fold(name): name for name in catalog.names("action")}
+        self._things = {words.fold(n) for n in (*catalog.names("prop"), *catalog.synonyms("prop"))}
 
     def read(self, node: ast.BeatNode) -> Beat | None:
+        """What somebody does; of a sentence that cannot be acted as it is, as much as can."""
+        node = self._of_an_owner(node)
+        group = () if node.words[0].text in self.characters else nearly.thing(node.words, self._known())
+        if group:
+            return self._about(node, group)
+        mark = self.report.mark()
+        beat = self._read(node)
+        told = beat is None and node.words[0].text in self.characters and len(node.words) > 1
+        if not told or self._is_strict(node):
+            return beat
+        wrong = self.report.take_back(mark)
+        if nearly.is_forgiven(wrong, self._actions, self._things):
+            shown = self._shown(node, self._readings(node))
+            if shown is not None:
+                self._tell(node, shown, nearly.why(wrong[0]), wrong[0].suggestion)
+                return shown[0]
+        self.report.put_back(wrong)
+        return None
+
+    def _is_strict(self, node: ast.BeatNode) -> bool:
+        """Whether a line is no sentence, has things by their full names, or somebody whom nobody knows."""
+        for word in node.words:
+            who = clauses.owner(word.text) or (word.text if clauses.owner(word.span.text) else "")
+            unknown = bool(who) and who not in self.characters
+            slip = any(nearly.is_mistyped(word.text, name) for name in self.characters)
+            if unknown or len(word.parts) > 1 or (slip and not self.targets.is_name(word)):
+                return True
+        return not nearly.is_told(node.words, (node.who or node.span).text)
+
+    def _of_an_owner(self, node: ast.BeatNode) -> ast.BeatNode:
+        """``ben jaw drops`` of ``ben's jaw drops``: what a part of somebody does is theirs."""
+        who = clauses.owner(node.words[0].text)
+        if who not in self.characters or node.words[0].text in self.characters:
+            return node
+        return replace(node, words=(ast.Name((who,), node.words[0].span), *node.words[1:]))
+
+    def _readings(self, node: ast.BeatNode) -> Iterator[tuple[ast.Name, ...]]:
+        mark = self.report.mark()
+        who, *rest = phrases.plain(self._manner(node)[0].words, self._known())
+        action, used = self._action(ast.BeatNode((who, *rest), node.span)) if rest else (None, 0)
+        self.report.take_back(mark)
+        after = tuple(rest[used:])
+        definition = self.catalog.get("action", action) if action else None
+        by_itself = getattr(definition, "target", "required") != "required"
+        whose = phrases.BODY & {word.text for word in after}  # `bites her lip` is not to bite something
+        alone = by_itself and not (whose and getattr(definition, "needs", "none") != "none")
+        return nearly.readings(who, tuple(rest[:used]), after, self._named_among(after, who.text), alone)
+
+    def _named_among(self, said: Sequence[ast.Name], who: str) -> list[ast.Name]:
+        return [word for word in said if self.targets.is_name(word) and word.text != who]
+
+    def _about(self, node: ast.BeatNode, group: tuple[ast.Name, ...]) -> Beat | None:
+        """``the phone rings``: the camera is on it, and somebody who is there looks at it."""
+        thing = ast.Name(self._it, node.span) if group[-1].text.startswith("it") and self._it else None
+        span = group[0].span.to(group[-1].span)
+        names = [ast.Name((joint.join(word.text for word in group),), span) for joint in ("_", "-")]
+        thing = thing or next((name for name in (*names, group[-1]) if self.targets.is_name(name)), None)
+        said = [word for word in node.words if word.text in self.characters]
+        meant = (self.mentions.meant(w.text) for w in node.words if w.text in ("him", "her", "them"))
+        people = [name for name in (*(word.text for word in said), *meant, self.mentions.last()) if name]
+        who = ast.Name((people[0] if people else "",), node.span)
+        if not people:
+            unknown_character(group[-1], self.characters, self.report)
+            return None
+        shown = self._shown(node, nearly.looks(who, [] if thing is None else [thing], node.span))
+        if shown is None:
+            return None
+        self._tell(node, shown, f"`{span.text}` does nothing by itself", None)
+        return replace(shown[0], about=shown[0].target)
+
+    def _shown(
+        self, node: ast.BeatNode, readings: Iterator[tuple[ast.Name, ...]]
+    ) -> tuple[Beat, tuple[ast.Name, ...]] | None:
+        """The first of some readings that is one."""
+        mark = self.report.mark()
+        for said in readings:
+            beat = self._read(replace(node, words=said))
+            self.report.take_back(mark)
+            if beat is not None:
+                text = " ".join((node.who.text if node.who else "", node.span.text)).strip()
+                text = text.removeprefix("(").removesuffix(")").strip()
+                if text.split()[:1] != () and text.split()[0].casefold() in (*ONE, *clauses.OWNERS):
+                    text = ""  # with a name for `she`
+                return replace(beat, said=text), said
+        return None
+
+    def _tell(
+        self,
+        node: ast.BeatNode,
+        shown: tuple[Beat, tuple[ast.Name, ...]],
+        help: str,
+        suggestion: str | None,
+    ) -> None:
+        words_ = " ".join(word.text for word in shown[1])
+        label = f"this is shown as `{words_}`"
+        self.report.warn("VDS085", node.span, label=label, help=help, suggestion=suggestion)
+
+    def _read(self, node: ast.BeatNode) -> Beat | None:
         character, mentions = self._character(node), self.mentions
+        if character is None and node.words[0].text in words.ARTICLES:
+            return None
         mentions.who = self.targets.who = character
         self.targets.said = node.words
         self.targets.prose = _is_prose(node.words)
@@ -146,18 +248,21 @@ class BeatReader:
         later: list[ast.StoryNode] = []
         besides: list[ast.BeatNode] = []
         for beat in node.beats:
-            read = clauses.sentence(beat.words, self._known())
+            said = capitals.small(beat.words, self.targets.is_name, self.characters)
+            read = clauses.sentence(said, self._known())
             for left in read.left_out:
                 span = left[0].span.to(left[-1].span)
                 self.report.warn("VDS082", span, label=f"`{span.text}` is left out", help=_NOT_SHOWN)
+            things = [bool(nearly.thing(part.words, self._known())) for part in read.parts]
             first, *others = (self._named_in(read.parts, n) for n in range(len(read.parts)))
-            whole = len(read.parts) == 1 and first[0] is beat.words[0]
+            whole = len(read.parts) == 1 and first[0].span == beat.words[0].span
             beats.append(replace(beat, words=first, span=beat.span if whole else _span(first)))
-            for said, part in zip(others, read.parts[1:], strict=True):
+            for said, part, after_thing in zip(others, read.parts[1:], things, strict=False):
                 done = ast.BeatNode(said, _span(said))
-                if part.meanwhile and not later:
+                meanwhile = part.meanwhile and not after_thing  # what a thing does is looked at by itself
+                if meanwhile and not later:
                     besides.append(done)
-                elif part.meanwhile:
+                elif meanwhile:
                     later[-1] = replace(later[-1], beats=(*later[-1].beats, done))
                 else:
                     later += self.one_by_one(_filmed_alike(node, done))
@@ -180,7 +285,7 @@ class BeatReader:
 
     def one_by_one(self, node: ast.StoryNode) -> tuple[ast.StoryNode, ...]:
         """``(ben sits down and reads)`` as two lines, filmed alike; what is said of one is of the first."""
-        if len(node.beats) != 1:
+        if len(node.beats) != 1 or nearly.thing(node.beats[0].words, self._known()):
             return (node,)
         said = node.beats[0].words
         who, does = clauses.one_after_the_other(said, self._known())
@@ -241,10 +346,11 @@ class BeatReader:
     # -- who and what ----------------------------------------------------------------
 
     def _character(self, node: ast.BeatNode) -> str | None:
-        word = node.words[0]
+        word, *more = node.words
         if word.text in self.characters:
             return word.text
-        unknown_character(word, self.characters, self.report)
+        somebody = more[0] if word.text in words.ARTICLES and more else word  # `the waiter walks in`
+        unknown_character(somebody, self.characters, self.report)
         return None
 
     def _manner(self, node: ast.BeatNode) -> tuple[ast.BeatNode, str]:

@@ -13,6 +13,7 @@ from pathlib import PurePath
 from . import ast
 from .beats import BeatReader
 from .bringing import bring, bring_named, put_about
+from .capitals import Named
 from .catalog import CatalogLike
 from .clauses import owner
 from .diagnostics import Report
@@ -30,6 +31,7 @@ from .source import Span
 from .stand_in import stand_in
 from .targets import unknown_character
 from .transitions import Joins
+from .words import fold
 
 
 def check(
@@ -89,6 +91,7 @@ class _Checker:
                     self._character(statement)
         self._headers()
         self._broken_characters()
+        self.script = replace(self.script, statements=self._as_named())
         broken = [b for b in self.script.broken if b.keyword == "scene"]
         for index, statement in enumerate(self.script.statements):
             while broken and broken[0].span.start < statement.span.start:
@@ -98,6 +101,13 @@ class _Checker:
         if not self.lines and self.script.statements and not self.report.has_errors:
             self._nothing_to_shoot()
         return self._storyboard()
+
+    def _as_named(self) -> tuple[ast.Statement, ...]:
+        """All lines, with everybody's name as it was defined."""
+        props = {fold(word) for word in (*self.catalog.names("prop"), *self.catalog.synonyms("prop"))}
+        names = (*self.characters, *self._later_characters(-1))
+        named = Named(names, lambda word: fold(word) in props)
+        return tuple(named.statement(each) for each in self.script.statements)
 
     def _broken_characters(self) -> None:
         """Who has a line that does not read is known all the same."""
@@ -392,7 +402,9 @@ class _Checker:
             seen[beat.character] = beat
 
     def _subject(self, beats: tuple[Beat, ...], stage: SceneBeingRead) -> Target | None:
-        """Whom the camera is about: who acts, else the first one in the scene."""
+        """Whom or what the camera is about: who acts, else the first one in the scene."""
+        if beats and beats[0].about is not None:
+            return beats[0].about
         if beats:
             who, span = beats[0].character, beats[0].span
         elif stage.members:

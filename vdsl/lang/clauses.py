@@ -43,6 +43,12 @@ _PERCEIVES = {
     "point",
 }
 COMMA = ","
+_SEVERAL = {
+    ("both", "of", "them"): "both",
+    ("the", "two", "of", "them"): "both",
+    ("the", "two"): "both",
+    ("all", "of", "them"): "all",
+}
 _MOST_ACTION_WORDS = 3
 
 
@@ -64,13 +70,23 @@ class Sentence:
 
 def sentence(said: Words, known: Known) -> Sentence:
     """The words of a beat as they are written, taken apart."""
-    said = _owned(said, known)
+    said = _owned(_several(said), known)
     begun = _begun(said, known)
     if begun is not None:
         return begun
     said, left = _with_and(said, known)
     parts, clauses = _parts(said, known)
     return Sentence(parts, (*clauses, *left))
+
+
+def _several(said: Words) -> Words:
+    """``both`` for ``both of them`` and ``the two``, ``all`` for ``all of them``."""
+    texts = [word.text for word in said[:4]]
+    for phrase, one in _SEVERAL.items():
+        count = len(phrase)
+        if tuple(texts[:count]) == phrase:
+            return (ast.Name((one,), said[0].span.to(said[count - 1].span)), *said[count:])
+    return said
 
 
 def owner(word: str) -> str:
@@ -105,9 +121,11 @@ def _goes_on(rest: Words, k: int, known: Known, third: bool) -> int | None:
     if any(known.is_action(rest[: at + size]) for size in (1, 2) if at + size <= len(rest)):
         return None  # `trips and falls` is one action
     object_before = k > 1 and rest[k - 1].text not in phrases.PARTICLES and not says_how(rest[k - 1])
+    several = is_third(rest[k - 1])  # `the hats and boxes`
     if (
         object_before
         and at + 1 == len(rest)
+        and (several or not third or not is_third(rest[at]))
         and any(map(known.is_thing, (rest[at], *phrases.of_several(rest[at]))))
     ):
         return None  # `the hat and box`
@@ -188,7 +206,7 @@ def _somebody_acts(after: Words, known: Known) -> int:
         unknown = bool(does) and is_third(does[0]) and not {*plain_forms(does[0].text)} & {*AUXILIARIES, "ha"}
         named = after[0].text in known.named
         return count if _begins(does, known) is not None or (named and unknown and len(does) > 0) else 0
-    slip = bool(after) and any(is_slip(after[0].text, name) for name in known.named)
+    slip = bool(after) and _is_slip(after[:1], known)
     return 1 if slip and _begins(after[1:], known, True) is not None else 0
 
 
@@ -230,7 +248,15 @@ def _begun(said: Words, known: Known) -> Sentence | None:
         joint = () if first.text in PREPOSITIONS else (ast.Name(("and",), said[comma].span),)
         one, *others = of_main.parts
         return replace(of_main, parts=(Part((*one.words, *joint, *said[:comma])), *others))
+    if _begins(clause, known) is None and not _is_slip(
+        said[:comma], known
+    ):  # `awkward silence, they look away`
+        return replace(of_main, left_out=(said[:comma], *of_main.left_out))
     return None
+
+
+def _is_slip(said: Words, known: Known) -> bool:
+    return any(is_slip(word.text, name) for word in said for name in known.named)
 
 
 # --- whose something is ------------------------------------------------------------------

@@ -524,6 +524,15 @@ CODES: dict[str, Code] = {
         "(carl picks up the harp)",
         "(carl picks up the cup)",
     ),
+    "VDS085": Code(
+        "something else is shown",
+        "A sentence cannot be acted as it is written: no action is called so, or it is done to something else, or what "
+        "it is done to is not there. So that the story can be filmed all the same, as much of it is shown as can be: "
+        "the action alone, or who it is about looks at what it names, or waits. The boards have the words as they are "
+        "written. A line in the short form, as `(carl walk counter)`, has to be right.",
+        "(carl yodels)",
+        "(carl waves)",
+    ),
     "VDS079": Code(
         "someone has no place yet",
         "Someone takes part in a scene and has not been placed in it. They are put at the scene's first free spot; "

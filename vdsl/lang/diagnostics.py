@@ -91,6 +91,21 @@ class Report:
         entry = Diagnostic(code, severity, title(code), span, label, help, suggestion, fix, notes)
         self._found.setdefault(key, entry)
 
+    def mark(self) -> int:
+        """A point from which on errors can be taken back."""
+        return len(self._found)
+
+    def take_back(self, mark: int) -> list[Diagnostic]:
+        """Errors added since a mark, which are no longer kept."""
+        keys = [key for key in list(self._found)[mark:] if self._found[key].severity == "error"]
+        return [self._found.pop(key) for key in keys]
+
+    def put_back(self, found: Iterable[Diagnostic]) -> None:
+        """Add what was taken back."""
+        for each in found:
+            key = (each.code, each.span.source.name, each.span.start, each.span.end)
+            self._found.setdefault(key, each)
+
     @property
     def diagnostics(self) -> tuple[Diagnostic, ...]:
         """All findings, by file, then by place; errors before warnings at the same place."""

@@ -133,6 +133,8 @@ class Beat:
     brought: what it is done with where the line names nothing: a thing somebody has about them, or in a hand
     who: where the script says who acts, if not at the beginning of ``span``
     ways: the action's variants that the line's words name; () for any
+    said: what the boards say of it where it is not what is shown
+    about: the thing that it is about where nobody acts, and that the camera is on unless told otherwise
     """
 
     character: str
@@ -144,6 +146,8 @@ class Beat:
     brought: Target | None = None
     who: Span | None = field(default=None, compare=False, repr=False)
     ways: tuple[str, ...] = ()
+    said: str = field(default="", compare=False)
+    about: Target | None = None
 
 
 @dataclass(frozen=True)

@@ -196,6 +196,8 @@ def _take(c: _Cutter, piece: str, first: str, at: int) -> None:
     elif first == ";":
         if c.stack and not c.parens:
             c.finish()
+        elif c.parens:  # a mark in a sentence, if there it has a place
+            c.text(at, end)
         elif not c.broken:
             c.text(at, end)
             c.broken = True

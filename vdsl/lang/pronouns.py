@@ -53,6 +53,12 @@ class Mentions:
         last = next((name for name in (*self._acted, *self._spoken_of) if name in may), "")
         return last or (may[0] if len(may) == 1 else "")
 
+    def last(self) -> str:
+        """Who acted or was spoken of last, else the first one about; "" for nobody."""
+        return next(
+            (name for name in (*self._acted, *self._spoken_of, *self.about) if name in self.about), ""
+        )
+
     def two(self) -> tuple[str, ...]:
         """Who ``they`` are: the two who are about, or of more those who acted together or were spoken of
         last."""

@@ -126,7 +126,9 @@ class Scope:
     def look_up(self, parts: tuple[str, ...]) -> list[Found]:
         """Everything the parts of a name may mean; one where it is plain, none where it is unknown."""
         if parts not in self._cache:
-            self._cache[parts] = self._search(parts) or self._with_somebody(parts)
+            found = self._search(parts) or self._with_somebody(parts)
+            small = tuple(part.casefold() for part in parts)
+            self._cache[parts] = found or (self.look_up(small) if small != parts else [])
         return self._cache[parts]
 
     def _search(self, parts: tuple[str, ...]) -> list[Found]:

@@ -71,9 +71,7 @@ RULES: tuple[Rule, ...] = (
     Rule("(anna walk) lens: 50mm", ":", (), r"(?<![\d ])(:)", "no colon here", "a name and its value stand side by side", ""),
     # story lines
     Rule("()", "()", ("story",), r"(\(\s*\))(?=[^)]*$)", "nobody does anything here", "as in `(anna walk door)`"),
-    Rule('(anna say "Hello.")', '"Hello."', ("story",), r'^\([^)]*("[^"]*")', "no text inside the parentheses",
-         'what is said stands after them: `(anna talk ben) say "Hello."`'),
-    Rule("(anna walk 3 steps)", "3", ("story",), r"^\([^)/]*?\s(\d[\w.]*)", "no numbers inside the parentheses",
+    Rule("(anna walk door 3s)", "3s", ("story",), r"^\([^)/]*?\s(\d[\w.]*)", "no numbers inside the parentheses",
          "a duration stands after them: `(anna walk door) 4s`"),
     Rule("(anna / walk)", "/", ("story",), r"^\([^)]*(/)", "the camera stands outside of the parentheses", f"as in {FORMS['story']}"),
     Rule("(anna walk) + ben wave", "ben wave", ("story",), rf"\+\s*({_N}[^(/+]*?)\s*(?:$|[/+])", "what happens at the same time has parentheses too",

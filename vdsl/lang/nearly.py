@@ -17,14 +17,27 @@ from .pronouns import ALL, BOTH, ONE
 from .source import Span
 from .words import ARTICLES, PREPOSITIONS, fold, plain_forms
 
-#: What is wrong with a sentence that is shown all the same: nothing is called so, no action is, it needs a
-#: target or takes none, these are several names, it is done to something else, or it may be any of several.
-_FORGIVEN = {"VDS060", "VDS061", "VDS071", "VDS072", "VDS073", "VDS074"}
+#: What is wrong with a sentence that is shown all the same: nothing, nobody or no action is called so, it
+#: needs a target or takes none, it is done to something else, or to one of several, or its words are no name.
+_FORGIVEN = {"VDS060", "VDS061", "VDS065", "VDS071", "VDS072", "VDS073", "VDS074"}
 _OWN = ("her", "his", "their")
 _IT = ("it", "it's", "there's", "that's")
 _MOST_NOUN_WORDS = 4
 #: Verbs that are no slips of others, and after which a thing does something.
-_HELPERS = ("doesn't", "won't", "isn't", "can't", "does", "starts", "goes", "is", "has", "was", "tries")
+_HELPERS = (
+    "doesn't",
+    "don't",
+    "won't",
+    "isn't",
+    "can't",
+    "does",
+    "starts",
+    "goes",
+    "is",
+    "has",
+    "was",
+    "tries",
+)
 #: What is named after them has nothing done to it.
 _NOT_TO = ("from", "of", "without")
 _SHORTEST = 3  # letters of a word that may be mistyped
@@ -35,7 +48,7 @@ def is_told(words: Words, said: str) -> bool:
     first = said.strip().removeprefix("(").split(maxsplit=1)[:1]
     pronoun = bool(first) and first[0].casefold() in (*ONE, *BOTH, *ALL)
     third = any(w.text.endswith("s") and not w.text.endswith("ss") for w in words[1:3])
-    return pronoun or third or any(word.text in (*ARTICLES, *_OWN) for word in words)
+    return pronoun or third or any(word.text in (*ARTICLES, *_OWN, *_HELPERS) for word in words)
 
 
 def thing(words: Words, known: Known) -> Words:
@@ -43,17 +56,17 @@ def thing(words: Words, known: Known) -> Words:
     another."""
     if words[0].text in _IT[1:] and len(words) > 1:
         return words[:1]
-    article = words[0].text in ARTICLES or words[0].text in _IT
+    article = words[0].text in ARTICLES
     noun = tuple(word for word in words if not says_how(word))
-    noun = noun[1:] if words[0].text in ARTICLES else noun
+    noun = noun[1:] if article else noun
     verb = next((k for k in range(1, min(_MOST_NOUN_WORDS + 1, len(noun))) if _is_verb(noun[k:])), 0)
-    of = next((k for k in range(1, verb) if noun[k].text in PREPOSITIONS), verb)
-    group = noun[:of]  # `the phone on the table rings`
+    end = verb or (len(noun) if article else 0)  # `a loud bang from outside`
+    group = noun[: next((k for k in range(1, end) if noun[k].text in PREPOSITIONS), end)]
     if not group or any(word.text in known.named for word in group):
         return ()
     last = group[-1]
     is_one = last.text in _IT or known.is_name(last) or any(map(known.is_thing, (last, *of_several(last))))
-    unknown = article and not any(known.is_action(noun[verb : verb + n]) for n in (1, 2))
+    unknown = article and not known.is_person(last.text)
     slip = any(is_slip(word.text, name) for word in group for name in known.named)
     return () if slip or not (is_one or unknown) else group
 
@@ -81,7 +94,9 @@ def _is_slip(wrong: Diagnostic, actions: Collection[str], things: Collection[str
     word = fold(wrong.span.text)
     if wrong.code == "VDS071":
         forms = {word, *plain_forms(word)}
-        return not {word} & {*_HELPERS} and any(is_mistyped(form, name) for form in forms for name in actions)
+        return wrong.span.text not in _HELPERS and any(
+            is_mistyped(form, name) for form in forms for name in actions
+        )
     meant = wrong.suggestion and fold(wrong.suggestion)
     near = bool(meant and abs(len(meant) - len(word)) <= 1)
     return near or (wrong.code == "VDS060" and any(is_mistyped(word, name) for name in things))

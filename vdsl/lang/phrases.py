@@ -154,7 +154,7 @@ class Known:
     it may mean who acts; it: the parts of the name of what was spoken of last, or (); many: whether it was
     several; is_action: whether all of some words name an action; is_name: whether a word is somebody's or
     something's in the scene; is_thing: whether it is one for a prop; may_be: whether a pronoun may mean
-    somebody
+    somebody; is_person: whether a word is one for people, as ``waiter``
     """
 
     named: Sequence[str]
@@ -166,6 +166,7 @@ class Known:
     is_name: Callable[[ast.Name], bool]
     is_thing: Callable[[ast.Name], bool]
     may_be: Callable[[str, str], bool]
+    is_person: Callable[[str], bool]
 
 
 def plain(said: Words, known: Known) -> Words:

@@ -20,6 +20,20 @@ BOTH = ("they", "both")
 #: All who are about.
 ALL = ("everybody", "everyone", "all", "they all")
 
+#: Words for people that are no name in a story, and what many others end in.
+_PEOPLE = {
+    "baby", "boss", "boy", "brother", "child", "children", "clerk", "cop", "couple", "crowd", "dad",
+    "daughter", "family", "friend", "girl", "guard", "guest", "guy", "husband", "kid", "kids", "king", "lady",
+    "mom", "mother", "nurse", "others", "people", "person", "priest", "queen", "sister", "son", "student",
+    "thief", "villain", "wife",
+}  # fmt: skip
+_ENDS = ("er", "or", "man", "men", "woman", "women", "ist", "ian", "ess")
+
+
+def is_person(word: str) -> bool:
+    """Whether a word is one for people: ``waiter``, ``doctor``, ``nurse``."""
+    return word in _PEOPLE or word.removesuffix("s").endswith(_ENDS)
+
 
 @dataclass
 class Mentions:

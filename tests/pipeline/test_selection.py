@@ -6,7 +6,7 @@ import numpy as np
 
 from vdsl.cinema.track import CameraTrack, look_at_rotation
 from vdsl.pipeline.filming import segment_frames
-from vdsl.pipeline.selection import choose_takes
+from vdsl.pipeline.selection import choose_takes, unlike
 from vdsl.propose.types import CameraProposal
 
 
@@ -39,6 +39,12 @@ def test_twins_fill_up_where_nothing_else_is_left_in_order_of_score():
 def test_fewer_proposals_than_takes_give_what_there_is():
     assert choose_takes((_proposal(0, 0.0),), np.array([0.5]), 5) == [0]
     assert choose_takes((), np.zeros(0), 5) == []
+
+
+def test_unlike_a_take_are_no_twins_of_it_unless_there_is_nothing_else():
+    cameras = (_proposal(0, 0.0), _proposal(1, 0.02), _proposal(2, 1.5), _proposal(3, 3.0))
+    assert unlike(cameras, 1) == [2, 3]
+    assert unlike(cameras[:2], 1) == [0]
 
 
 def test_segments_are_sampled_in_their_middles():

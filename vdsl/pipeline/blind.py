@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import argparse
 import json
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
@@ -24,7 +24,7 @@ from .glance import Scored, Screening
 from .guides import about_of
 from .judging import DiscriminatorJudge
 from .progress import Silence, StageClock
-from .selection import alike
+from .selection import unlike
 from .witness import best, vet
 
 _SEED = 2_000_003  # added to the seed: other stories than of training sets and hidden picks
@@ -44,7 +44,7 @@ def blind(out: Path, lines: int, weights: Path | None = None, seed: int = 0, dev
     for number, (scene, shown) in enumerate(held_out_lines(seed, lines), 1):
         scored = _scored(judge, camerawork, scene, shown)
         chosen = _first(scored, camerawork, scene, shown)
-        other = int(rng.choice(_others(shown.cameras, chosen)))
+        other = int(rng.choice(unlike(shown.cameras, chosen)))
         scored.look([other])
         sides = [chosen, other] if rng.random() < 0.5 else [other, chosen]
         for letter, i in zip("AB", sides, strict=True):
@@ -94,12 +94,6 @@ def _first(scored: Scored, camerawork: Camerawork, scene: Scene, shown: Proposal
         (first,) = first_of(vetted.order, vetted.failed)
         if not scored.look([first]):
             return first
-
-
-def _others(cameras: Sequence[CameraProposal], chosen: int) -> list[int]:
-    """Which takes may be drawn beside a chosen one: those that look different, or where none does, all."""
-    others = [i for i in range(len(cameras)) if i != chosen]
-    return [i for i in others if not alike(cameras[i], cameras[chosen])] or others
 
 
 def _strip(camerawork: Camerawork, scene: Scene, shown: ProposalGrid, camera: CameraProposal) -> Image.Image:

@@ -59,6 +59,12 @@ def further_takes(
     return found
 
 
+def unlike(cameras: Sequence[CameraProposal], chosen: int) -> list[int]:
+    """Indices of the takes that look different from a chosen one; where none does, of all others."""
+    others = [i for i in range(len(cameras)) if i != chosen]
+    return [i for i in others if not alike(cameras[i], cameras[chosen])] or others
+
+
 def alike(a: CameraProposal, b: CameraProposal) -> bool:
     """Whether two takes would look the same."""
     one, two = _sampled(a), _sampled(b)

@@ -307,7 +307,7 @@ def test_what_would_be_misread_is_told(line: str, shown: tuple[str, str]) -> Non
 
 
 def test_what_is_so_like_a_name_that_it_is_one_is_an_error() -> None:
-    _, report = read("(ben sits on the stone)")  # a stove
+    _, report = read("(ben sits on the stoev)")
     assert [(d.code, d.suggestion) for d in report.errors] == [("VDS060", "stove")]
 
 

@@ -56,6 +56,34 @@ def test_a_thing_keeps_its_small_letters() -> None:
     assert two.target.path == ("Rose",)
 
 
+def test_what_is_somebodys_is_so_in_capitals_too() -> None:
+    people = ("Rose", "Mark")
+    board = story("Rose at chair\nMark at door\n(Rose takes Mark's hand)\n(MARK'S HANDS TREMBLE)", *people)
+    assert [(each.beats[0].character, each.beats[0].action) for each in board.lines] == [
+        ("Rose", "hold-hands"),
+        ("Mark", "tremble"),
+    ]
+
+
+@pytest.mark.parametrize(
+    "line",
+    ["(Ben nods while Anan waves)", "(Anna gives Bne the cup)", "(Anna nods and Bne waves)"],
+)
+def test_slips_of_names_in_capitals_are_told(line: str) -> None:
+    _, report = read(f"Anna at chair\nBen at door\n{line}", "Anna", "Ben")
+    assert report.errors
+
+
+def test_a_small_word_that_says_how_is_nobody() -> None:
+    board = story("Joy at chair\nanna at door\n(anna dances with joy)\n(anna dances with Joy)", "Joy", "anna")
+    assert [line.beats[0].action for line in board.lines] == ["dance", "dance-with"]
+
+
+def test_whose_view_it_is_may_have_any_capitals() -> None:
+    board = story("anna at chair\nben at door\n(anna waves at ben) / (ots Ben)")
+    assert board.lines[0].shots[0].whose == ("ben",)
+
+
 def test_an_unknown_name_is_still_told_with_how_to_add_it() -> None:
     _, report = read("anna at chair\n(The waiter walks in)")
     (error,) = report.errors
@@ -71,6 +99,10 @@ def test_an_unknown_name_is_still_told_with_how_to_add_it() -> None:
         ("(anna walks in — slowly)", ["enter"]),
         ("(anna takes the cup - and drinks)", ["pick-up", "drink"]),
         ("(anna picks up 3 cups)", ["pick-up"]),
+        ("(Anna waits for 3 seconds)", ["wait"]),
+        ("(Anna – slowly – opens the fridge)", ["open"]),
+        ("(She stops. Turns. Silence.)", ["stop", "turn"]),
+        ("(Footsteps; anna ducks)", ["duck"]),
     ],
 )
 def test_marks_between_words(line: str, expected: list[str]) -> None:
@@ -84,9 +116,18 @@ def test_marks_between_words(line: str, expected: list[str]) -> None:
         ('(anna "Hi!")', "talk", "Hi!"),
         ('(anna: "Hi!")', "talk", "Hi!"),
         ('(anna waves "Hi!") + (ben waves "Oh.")', "wave", "Hi! Oh."),
+        ('(anna and ben "Hi!")', "talk", "Hi!"),
+        ('(anna to ben: "Hi!")', "talk", "Hi!"),
+        ('(anna waves "Hi!") say "Bye."', "wave", "Hi! Bye."),
         ('(anna waves "Hi!") / (static) say "Bye."', "wave", "Bye."),
     ],
 )
 def test_what_is_said_may_stand_in_the_line(line: str, action: str, say: str) -> None:
     (found,) = story(f"anna at chair\nben at door\n{line}").lines
     assert (found.beats[0].action, found.shots[0].say) == (action, say)
+
+
+def test_each_says_what_stands_with_what_they_do() -> None:
+    board = story('anna at chair\nben at door\n(Anna waves and says "Hi", Ben says "Ho.")')
+    told_as = [(line_words(line, "s"), line.shots[0].say) for line in board.lines]
+    assert told_as == [("Anna waves", None), ('Anna says "Hi"', "Hi"), ('Ben says "Ho."', "Ho.")]

@@ -54,7 +54,12 @@ def test_it_is_told_what_is_shown_and_why() -> None:
         ("(anna hugs)", "VDS072"),
         ("(crala walks to the door)", "VDS065"),
         ("(the waiter walks in)", "VDS065"),
-        ("(ben fell)", "VDS071"),
+        ("(anna wslks to the door)", "VDS071"),
+        ("(the kettel whistles)", "VDS060"),
+        ("(anna hugs carl)", "VDS060"),
+        ("(anna waves at Bob)", "VDS060"),
+        ("(the police arrive)", "VDS065"),
+        ("(John's phone rings)", "VDS065"),
     ],
 )
 def test_slips_and_short_lines_stay_errors(line: str, code: str) -> None:
@@ -75,6 +80,13 @@ def test_slips_and_short_lines_stay_errors(line: str, code: str) -> None:
         ("(the phone doesn't ring)", "phone", "phone"),
         ("(a loud bang from outside)", "", None),
         ("(a dog runs in)", "", None),
+        ("(the cups fall)", "cup", "cup"),
+        ("(The cup fell)", "cup", "cup"),
+        ("(anna's phone rings)", "phone", "phone"),
+        ("(it’s raining)", "", None),
+        ("(there's a knock at the door)", "", None),
+        ("(nobody moves)", "", None),
+        ("(the floor creaks)", "", None),
     ],
 )
 def test_what_things_do_is_a_shot_of_them(line: str, expected: str, about: str | None) -> None:
@@ -92,10 +104,43 @@ def test_a_camera_may_still_be_on_somebody() -> None:
     assert board.lines[0].shots[0].focus.path == ("ben",)
 
 
-def test_who_is_there_looks_at_it_and_others_act_afterwards() -> None:
-    board, _ = read("(the door opens and ben walks in)", "apartment.kitchen")
-    assert board is not None
-    assert [[(b.character, b.action) for b in line.beats] for line in board.lines] == [
-        [("anna", "look")],
-        [("ben", "enter")],
-    ]
+@pytest.mark.parametrize(
+    ("line", "expected"),
+    [
+        ("(the door opens and ben walks in)", [["anna look door"], ["ben enter middle"]]),
+        ("(The phone rings. Ben answers it.)", [["anna look phone"], ["ben answer phone"]]),
+        ("(When the phone rings, Ben answers it)", [["anna look phone"], ["ben answer phone"]]),
+        ("(Anna drops the cup. It shatters.)", [["anna drop cup"], ["anna look cup"]]),
+        ("(ben knocks. the door opens)", [["ben knock door"], ["ben look door"]]),
+        ("(ben waves) + (the phone rings)", [["ben wave ", "anna look phone"]]),
+        ("(the phone rings) + (the kettle whistles)", [["anna look phone", "ben look kettle"]]),
+        ("(Suddenly, the phone rings.)", [["anna look phone"]]),
+        ("(anna opens the door and the windows)", [["anna open door"]]),  # of which nothing is done
+        ("(ben's phone rings and he answers it)", [["ben look phone"], ["ben answer phone"]]),
+    ],
+)
+def test_what_things_do_among_what_people_do(line: str, expected: list[list[str]]) -> None:
+    board, report = read(line)
+    assert board is not None, [d.label for d in report.errors]
+    found = [[" ".join((b.character, *told(b)[:2])) for b in each.beats] for each in board.lines]
+    assert found == expected
+
+
+@pytest.mark.parametrize("line", ["(anna doesn’t move)", "(anna is not sitting)", "(ben never laughs)"])
+def test_what_is_not_done_is_not_shown(line: str) -> None:
+    done, labels = shown(line)
+    assert [action for _, action, _ in done] == ["wait"]
+    assert labels == [f"this is shown as `{done[0][0]} wait`"]
+
+
+def test_verbs_that_nobody_can_act_are_no_slips_of_others() -> None:
+    for verb in ("flies", "hates it", "loses her balance", "wins", "sinks", "weaves a basket", "chews gum"):
+        board, report = read(f"(anna {verb})")
+        assert board is not None, [d.label for d in report.errors]
+
+
+@pytest.mark.parametrize("line", ["(anna walked to the door)", "(anna opened the door)", "(ben sat down)"])
+def test_the_past_is_as_good(line: str) -> None:
+    board, report = read(line)
+    assert board is not None, [d.label for d in report.errors]
+    assert not [d for d in report.diagnostics if d.code == "VDS085"]

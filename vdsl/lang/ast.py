@@ -239,11 +239,12 @@ class PlacementLine:
 @dataclass(frozen=True)
 class BeatNode:
     """``(anna pick up cup)``: the words as written, the first one the character; who: where that stands if
-    not in front of the others, as in ``(anna waves and laughs)``."""
+    not in front of the others, as in ``(anna waves and laughs)``; spoken: what is said in it."""
 
     words: tuple[Name, ...]
     span: Span = field(compare=False, repr=False)
     who: Span | None = field(default=None, compare=False, repr=False)
+    spoken: tuple[Text, ...] = ()
 
 
 @dataclass(frozen=True)

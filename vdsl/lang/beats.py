@@ -7,7 +7,6 @@ left are one or two targets, the second after a word like ``to`` or ``with``. A 
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 from runtime.motion.manner import MANNERS
@@ -16,11 +15,13 @@ from . import ast, capitals, clauses, nearly, phrases, pronouns, words
 from .catalog import CatalogLike
 from .definitions.types import DefinitionBase
 from .diagnostics import Report, listing, nearest
+from .fallback import STAYS, Fallback
 from .ir import Beat, Target
 from .pronouns import ONE, Mentions
 from .scope import Scope
 from .source import Span
 from .targets import KIND_WORDS, TargetReader, kind_fits, unknown_character
+from .things import thing
 
 _MOST_ACTION_WORDS = 5
 _MOST_LISTED = 30
@@ -50,121 +51,43 @@ class BeatReader:
         self.report = report
         self.targets = TargetReader(catalog, characters, scope, report)
         self.mentions = mentions or Mentions(characters)
-        self._it: tuple[str, ...] = ()  # the name of the thing that was spoken of last
+        self.it: tuple[str, ...] = ()  # the name of the thing that was spoken of last
         self._many = False  # whether it was several, so that `them` may be it
-        self._actions = {words.fold(word): name for word, name in catalog.synonyms("action").items()}
-        self._actions |= {words.fold(name): name for name in catalog.names("action")}
-        self._things = {words.fold(n) for n in (*catalog.names("prop"), *catalog.synonyms("prop"))}
+        self.actions = {words.fold(word): name for word, name in catalog.synonyms("action").items()}
+        self.actions |= {words.fold(name): name for name in catalog.names("action")}
+        self.fallback = Fallback(self)
+        self.things = {words.fold(n) for n in (*catalog.names("prop"), *catalog.synonyms("prop"))}
 
     def read(self, node: ast.BeatNode) -> Beat | None:
         """What somebody does; of a sentence that cannot be acted as it is, as much as can."""
-        node = self._of_an_owner(node)
-        group = () if node.words[0].text in self.characters else nearly.thing(node.words, self._known())
-        if group:
-            return self._about(node, group)
+        found = self.fallback.thing(node)
+        if found is not None:
+            return self.fallback.about(node, found)
         mark = self.report.mark()
-        beat = self._read(node)
-        told = beat is None and node.words[0].text in self.characters and len(node.words) > 1
-        if not told or self._is_strict(node):
+        somebody = node.words[0].text in self.characters and len(node.words) > 1
+        if somebody and nearly.is_negated(node.words):
+            return self.fallback.not_done(node)
+        beat = self.act(node)
+        if beat is not None or not somebody or self.fallback.is_strict(node):
             return beat
-        wrong = self.report.take_back(mark)
-        if nearly.is_forgiven(wrong, self._actions, self._things):
-            shown = self._shown(node, self._readings(node))
-            if shown is not None:
-                self._tell(node, shown, nearly.why(wrong[0]), wrong[0].suggestion)
-                return shown[0]
-        self.report.put_back(wrong)
-        return None
+        wrong = self.report.take_back(mark, STAYS)
+        beat = self.fallback.instead(node, [each for each in wrong if each.severity == "error"])
+        if beat is None:
+            self.report.put_back(wrong)
+        return beat
 
-    def _is_strict(self, node: ast.BeatNode) -> bool:
-        """Whether a line is no sentence, has things by their full names, or somebody whom nobody knows."""
-        for word in node.words:
-            who = clauses.owner(word.text) or (word.text if clauses.owner(word.span.text) else "")
-            unknown = bool(who) and who not in self.characters
-            slip = any(nearly.is_mistyped(word.text, name) for name in self.characters)
-            if unknown or len(word.parts) > 1 or (slip and not self.targets.is_name(word)):
-                return True
-        return not nearly.is_told(node.words, (node.who or node.span).text)
-
-    def _of_an_owner(self, node: ast.BeatNode) -> ast.BeatNode:
-        """``ben jaw drops`` of ``ben's jaw drops``: what a part of somebody does is theirs."""
-        who = clauses.owner(node.words[0].text)
-        if who not in self.characters or node.words[0].text in self.characters:
-            return node
-        return replace(node, words=(ast.Name((who,), node.words[0].span), *node.words[1:]))
-
-    def _readings(self, node: ast.BeatNode) -> Iterator[tuple[ast.Name, ...]]:
-        mark = self.report.mark()
-        who, *rest = phrases.plain(self._manner(node)[0].words, self._known())
-        action, used = self._action(ast.BeatNode((who, *rest), node.span)) if rest else (None, 0)
-        self.report.take_back(mark)
-        after = tuple(rest[used:])
-        definition = self.catalog.get("action", action) if action else None
-        by_itself = getattr(definition, "target", "required") != "required"
-        whose = phrases.BODY & {word.text for word in after}  # `bites her lip` is not to bite something
-        alone = by_itself and not (whose and getattr(definition, "needs", "none") != "none")
-        return nearly.readings(who, tuple(rest[:used]), after, self._named_among(after, who.text), alone)
-
-    def _named_among(self, said: Sequence[ast.Name], who: str) -> list[ast.Name]:
-        return [word for word in said if self.targets.is_name(word) and word.text != who]
-
-    def _about(self, node: ast.BeatNode, group: tuple[ast.Name, ...]) -> Beat | None:
-        """``the phone rings``: the camera is on it, and somebody who is there looks at it."""
-        thing = ast.Name(self._it, node.span) if group[-1].text.startswith("it") and self._it else None
-        span = group[0].span.to(group[-1].span)
-        names = [ast.Name((joint.join(word.text for word in group),), span) for joint in ("_", "-")]
-        thing = thing or next((name for name in (*names, group[-1]) if self.targets.is_name(name)), None)
-        said = [word for word in node.words if word.text in self.characters]
-        meant = (self.mentions.meant(w.text) for w in node.words if w.text in ("him", "her", "them"))
-        people = [name for name in (*(word.text for word in said), *meant, self.mentions.last()) if name]
-        who = ast.Name((people[0] if people else "",), node.span)
-        if not people:
-            unknown_character(group[-1], self.characters, self.report)
-            return None
-        shown = self._shown(node, nearly.looks(who, [] if thing is None else [thing], node.span))
-        if shown is None:
-            return None
-        self._tell(node, shown, f"`{span.text}` does nothing by itself", None)
-        return replace(shown[0], about=shown[0].target)
-
-    def _shown(
-        self, node: ast.BeatNode, readings: Iterator[tuple[ast.Name, ...]]
-    ) -> tuple[Beat, tuple[ast.Name, ...]] | None:
-        """The first of some readings that is one."""
-        mark = self.report.mark()
-        for said in readings:
-            beat = self._read(replace(node, words=said))
-            self.report.take_back(mark)
-            if beat is not None:
-                text = " ".join((node.who.text if node.who else "", node.span.text)).strip()
-                text = text.removeprefix("(").removesuffix(")").strip()
-                if text.split()[:1] != () and text.split()[0].casefold() in (*ONE, *clauses.OWNERS):
-                    text = ""  # with a name for `she`
-                return replace(beat, said=text), said
-        return None
-
-    def _tell(
-        self,
-        node: ast.BeatNode,
-        shown: tuple[Beat, tuple[ast.Name, ...]],
-        help: str,
-        suggestion: str | None,
-    ) -> None:
-        words_ = " ".join(word.text for word in shown[1])
-        label = f"this is shown as `{words_}`"
-        self.report.warn("VDS085", node.span, label=label, help=help, suggestion=suggestion)
-
-    def _read(self, node: ast.BeatNode) -> Beat | None:
+    def act(self, node: ast.BeatNode) -> Beat | None:
+        """What somebody does by the words of a beat; None where it was reported that they cannot."""
         character, mentions = self._character(node), self.mentions
         if character is None and node.words[0].text in words.ARTICLES:
             return None
         mentions.who = self.targets.who = character
         self.targets.said = node.words
         self.targets.prose = _is_prose(node.words)
-        node, manner = self._manner(node)
+        node, manner = self.without_manner(node)
         possessed = next((w.text for w in node.words if w.text in ("her", "his", "their")), "")
         spoken_of = mentions.meant(possessed)
-        node = replace(node, words=phrases.plain(node.words, self._known()))
+        node = replace(node, words=phrases.plain(node.words, self.known()))
         mentions.read(character, [word.text for word in node.words if word.text in self.characters])
         if len(node.words) < 2:
             self.report.error(
@@ -174,7 +97,7 @@ class BeatReader:
                 help="as in `(anna walk door)`: character, action, target",
             )
             return None
-        action, used = self._action(node)
+        action, used = self.action_of(node)
         definition = None if action is None else self.catalog.get("action", action)
         if action is None or definition is None:
             return None
@@ -197,7 +120,7 @@ class BeatReader:
             named = [Target("character", (whom,), whom, node.span, implied=True)]
         thing = next((t for t in named if t.kind == "object" and not t.implied), in_hand)
         if thing is not None:
-            self._it = tuple(thing.written.split("."))
+            self.it = tuple(thing.written.split("."))
             self._many = thing.written.endswith("s") or thing.span.text.endswith("s")
         only_second = _is_second(definition, named)
         if not only_second and not self.targets.fits(node, action, definition, named):
@@ -249,17 +172,21 @@ class BeatReader:
         besides: list[ast.BeatNode] = []
         for beat in node.beats:
             said = capitals.small(beat.words, self.targets.is_name, self.characters)
-            read = clauses.sentence(said, self._known())
+            read = clauses.sentence(said, self.known())
             for left in read.left_out:
                 span = left[0].span.to(left[-1].span)
                 self.report.warn("VDS082", span, label=f"`{span.text}` is left out", help=_NOT_SHOWN)
-            things = [bool(nearly.thing(part.words, self._known())) for part in read.parts]
-            first, *others = (self._named_in(read.parts, n) for n in range(len(read.parts)))
+            of_things = [thing(part.words, self.known()) is not None for part in read.parts]
+            first, *others = (
+                clauses.speaks(words, self.known()) if beat.spoken else words
+                for words in (self._named_in(read.parts, n) for n in range(len(read.parts)))
+            )
             whole = len(read.parts) == 1 and first[0].span == beat.words[0].span
             beats.append(replace(beat, words=first, span=beat.span if whole else _span(first)))
-            for said, part, after_thing in zip(others, read.parts[1:], things, strict=False):
+            for said, part, after_thing in zip(others, read.parts[1:], of_things, strict=False):
                 done = ast.BeatNode(said, _span(said))
-                meanwhile = part.meanwhile and not after_thing  # what a thing does is looked at by itself
+                # what a thing does is looked at by itself, and two speak one after the other
+                meanwhile = part.meanwhile and not after_thing and len(beat.spoken) < 2
                 if meanwhile and not later:
                     besides.append(done)
                 elif meanwhile:
@@ -272,7 +199,7 @@ class BeatReader:
             one, *more = self.one_by_one(_filmed_alike(node, beat))
             last = replace(last, beats=(*last.beats, *one.beats))
             after += more
-        return (*lines, last, *after, *later)
+        return _with_speech((*lines, last, *after, *later), node)
 
     def _named_in(self, parts: tuple[clauses.Part, ...], n: int) -> tuple[ast.Name, ...]:
         """The words of a part, with a name for ``he`` where that is whom the part before was about."""
@@ -285,10 +212,10 @@ class BeatReader:
 
     def one_by_one(self, node: ast.StoryNode) -> tuple[ast.StoryNode, ...]:
         """``(ben sits down and reads)`` as two lines, filmed alike; what is said of one is of the first."""
-        if len(node.beats) != 1 or nearly.thing(node.beats[0].words, self._known()):
+        if len(node.beats) != 1 or thing(node.beats[0].words, self.known()) is not None:
             return (node,)
         said = node.beats[0].words
-        who, does = clauses.one_after_the_other(said, self._known())
+        who, does = clauses.one_after_the_other(said, self.known())
         if len(does) == 1:
             return (node,)
         named, lines = who[0].span.to(who[-1].span), []
@@ -312,18 +239,18 @@ class BeatReader:
     def each_of(self, node: ast.BeatNode) -> tuple[tuple[ast.BeatNode, ...], bool]:
         """The beat for each of those it is of, as :func:`vdsl.lang.phrases.each_of` says."""
         self.mentions.who, self.mentions.acting = None, ()
-        found, together = phrases.each_of(node, self.mentions, self._known())
+        found, together = phrases.each_of(node, self.mentions, self.known())
         self.mentions.acting = ()
         self.mentions.group = tuple(each.words[0].text for each in found) if len(found) > 1 else ()
         return found, together
 
-    def _known(self) -> phrases.Known:
+    def known(self) -> phrases.Known:
         own = self.mentions.may_be_own
         return phrases.Known(
             self.characters,
             self.mentions.meant,
             own,
-            self._it,
+            self.it,
             self._many,
             self._is_action,
             self.targets.is_name,
@@ -358,7 +285,7 @@ class BeatReader:
         unknown_character(somebody, self.characters, self.report)
         return None
 
-    def _manner(self, node: ast.BeatNode) -> tuple[ast.BeatNode, str]:
+    def without_manner(self, node: ast.BeatNode) -> tuple[ast.BeatNode, str]:
         """The beat without its word for the manner, and that word."""
         said = [w for w in node.words[1:] if w.text not in self.characters and words.fold(w.text) in MANNERS]
         for more in said[1:]:
@@ -371,7 +298,7 @@ class BeatReader:
         rest = tuple(w for w in node.words if not any(w is s for s in said))
         return replace(node, words=rest), words.fold(said[0].text) if said else ""
 
-    def _action(self, node: ast.BeatNode) -> tuple[str | None, int]:
+    def action_of(self, node: ast.BeatNode) -> tuple[str | None, int]:
         """The action, and how many words it took."""
         rest = node.words[1:]
         found: tuple[str, int] | None = None
@@ -392,11 +319,11 @@ class BeatReader:
         if found is not None:
             return found
         word = words.fold(rest[0].text)
-        meant = nearest(word, self._actions)
+        meant = nearest(word, self.actions)
         if meant is None and len(rest) > 1:
-            meant = nearest(f"{word}-{words.fold(rest[1].text)}", self._actions)
+            meant = nearest(f"{word}-{words.fold(rest[1].text)}", self.actions)
         if meant is None:  # walking, walked
-            meant = next((a for a in self._actions if len(a) > 2 and word.startswith(a)), None)
+            meant = next((a for a in self.actions if len(a) > 2 and word.startswith(a)), None)
         self.report.error(
             "VDS071",
             rest[0].span,
@@ -411,7 +338,7 @@ class BeatReader:
         """The action that all of some words name, the first as it is or in the third person."""
         first, *others = (words.fold(name.text) for name in said)
         forms = ("-".join((form, *others)) for form in (first, *words.plain_forms(first)))
-        return next((self._actions[form] for form in forms if form in self._actions), None)
+        return next((self.actions[form] for form in forms if form in self.actions), None)
 
     def _is_action(self, said: tuple[ast.Name, ...]) -> bool:
         return bool(said) and self._called(said) is not None
@@ -480,6 +407,33 @@ def _is_prose(said: tuple[ast.Name, ...]) -> bool:
     article = any(word.text in words.ARTICLES for word in said)
     third = [w.text for w in said[1:3] if w.text.endswith("s") and not w.text.endswith("ss")]
     return article or bool(third)
+
+
+def _with_speech(lines: tuple[ast.StoryNode, ...], node: ast.StoryNode) -> tuple[ast.StoryNode, ...]:
+    """Lines with what is said in the words they were taken from, each where it is said."""
+    texts = [text for beat in node.beats for text in beat.spoken]
+    if not texts:
+        return lines
+    begin = [min(word.span.start for word in line.beats[0].words) for line in lines]
+    said: dict[int, list[ast.Text]] = {}
+    for text in texts:
+        at = max((n for n, start in enumerate(begin) if start <= text.span.start), default=0)
+        said.setdefault(at, []).append(text)
+    return tuple(_saying(line, said[n]) if n in said else line for n, line in enumerate(lines))
+
+
+def _saying(line: ast.StoryNode, texts: list[ast.Text]) -> ast.StoryNode:
+    """A line with what is said in it, before what its option says."""
+    option = next((each for each in line.options if words.fold(each.name.text) == "say"), None)
+    later = [value for value in option.values if isinstance(value, ast.Text)] if option else []
+    span = texts[0].span
+    whole = ast.Text(" ".join(text.value for text in (*texts, *later)), span)
+    others = tuple(each for each in line.options if each is not option)
+    *beats, last = line.beats
+    if last.span.end < texts[-1].span.end:
+        last = replace(last, span=last.span.to(texts[-1].span))
+    say = ast.Option(ast.Name(("say",), span), (whole,), span)
+    return replace(line, beats=(*beats, last), options=(*others, say))
 
 
 def _span(said: tuple[ast.Name, ...]) -> Span:

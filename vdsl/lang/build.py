@@ -246,36 +246,31 @@ class Builder:
 
     def story(self, node: Tree[Token]) -> ast.StoryNode:
         beats: list[ast.BeatNode] = []
-        spoken: list[ast.Text] = []
         options: tuple[ast.Option, ...] = ()
         cameras: list[ast.CameraNode] = []
         for child in node.children:
             assert isinstance(child, Tree)
             if child.data == "beat":
-                beats.append(self._beat(child, spoken))
+                beats.append(self._beat(child))
             elif child.data == "options":
                 options = self._options(child)
             else:
                 cameras.append(self._camera(child))
-        if spoken and not any(each.name.text == "say" for each in options):
-            span = spoken[0].span
-            text = ast.Text(" ".join(each.value for each in spoken), span)
-            options = (*options, ast.Option(ast.Name(("say",), span), (text,), span))
         return ast.StoryNode(tuple(beats), options, tuple(cameras), self.span(node))
 
-    def _beat(self, node: Tree[Token], spoken: list[ast.Text]) -> ast.BeatNode:
-        """The words of a beat, with a comma for any mark; what somebody says in it goes to ``spoken``."""
+    def _beat(self, node: Tree[Token]) -> ast.BeatNode:
+        """The words of a beat, with a full stop or a comma for any mark."""
         words: list[ast.Name] = []
+        spoken: list[ast.Text] = []
         for token in map(_token, node.children):
             if token.type == "TEXT":
                 spoken.append(self.text(token))
             elif token.type == "MARK":
-                words.append(ast.Name((",",), self.span(token)))
+                ends = any(mark in token for mark in ".!?;")
+                words.append(ast.Name(("." if ends else ",",), self.span(token)))
             else:
                 words.append(self.name(token))
-        if spoken and all(word.text == "," for word in words[1:]):
-            words = [words[0], ast.Name(("talk",), spoken[-1].span)]  # `(anna "Hello!")`
-        return ast.BeatNode(tuple(words), self.span(node))
+        return ast.BeatNode(tuple(words), self.span(node), spoken=tuple(spoken))
 
     def _camera(self, node: Tree[Token]) -> ast.CameraNode:
         parts: list[Token] = [child for child in node.children if isinstance(child, Token)]

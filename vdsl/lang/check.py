@@ -22,6 +22,7 @@ from .hands import Hands
 from .ids import Ids
 from .ir import Beat, Character, Scene, Storyboard, StoryLine, Target
 from .lookup import Lookup, Setting
+from .phrases import is_small
 from .placement import SceneBeingRead, appear, place, someone_or_something
 from .pronouns import Mentions
 from .scope import Scope
@@ -104,9 +105,10 @@ class _Checker:
 
     def _as_named(self) -> tuple[ast.Statement, ...]:
         """All lines, with everybody's name as it was defined."""
-        props = {fold(word) for word in (*self.catalog.names("prop"), *self.catalog.synonyms("prop"))}
+        kinds = ("prop", "action")
+        words = {fold(w) for kind in kinds for w in (*self.catalog.names(kind), *self.catalog.synonyms(kind))}
         names = (*self.characters, *self._later_characters(-1))
-        named = Named(names, lambda word: fold(word) in props)
+        named = Named(names, lambda word: fold(word) in words or is_small(word))
         return tuple(named.statement(each) for each in self.script.statements)
 
     def _broken_characters(self) -> None:
@@ -332,6 +334,7 @@ class _Checker:
         """One line of the story, in which everybody does one thing."""
         here = tuple(name for name in self.characters if name in stage.placements)  # so far
         reader.mentions.about = here or stage.members or tuple(self.characters)
+        reader.fallback.acting = {each.words[0].text for each in node.beats}
         done = tuple(beat for each in node.beats for beat in self._beats(reader, each, stage))
         self._together(done)
         for beat in done:
@@ -384,7 +387,9 @@ class _Checker:
             if word.text in self.characters:
                 appear(word, stage, self.report)
         beat = reader.read(node)
-        stage.acted.add(node.words[0].text)
+        if beat is not None and beat.character not in (word.text for word in node.words):
+            appear(ast.Name((beat.character,), node.words[0].span), stage, self.report)
+        stage.acted.add(node.words[0].text if beat is None else beat.character)
         return None if beat is None else bring(beat, stage, self.catalog)
 
     def _together(self, beats: tuple[Beat, ...]) -> None:

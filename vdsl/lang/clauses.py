@@ -6,14 +6,17 @@ done in, each beginning with who does it, without commas and possessives, and th
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 from runtime.motion.manner import MANNERS
 
 from . import ast, phrases
 from .diagnostics import is_slip
+from .english import is_not
 from .phrases import AUXILIARIES, BODY, Known, Words, is_third, says_how
 from .pronouns import ALL, BOTH, ONE
+from .things import thing
 from .words import ARTICLES, PREPOSITIONS, fold, plain_forms
 
 #: What they begin does not show: why, when, or what somebody thinks of it.
@@ -42,7 +45,8 @@ _PERCEIVES = {
     "wave",
     "point",
 }
-COMMA = ","
+COMMA, STOP = ",", "."
+_COUNTED = ("second", "minute", "hour", "time", "step", "metre", "meter")
 _SEVERAL = {
     ("both", "of", "them"): "both",
     ("the", "two", "of", "them"): "both",
@@ -70,13 +74,69 @@ class Sentence:
 
 def sentence(said: Words, known: Known) -> Sentence:
     """The words of a beat as they are written, taken apart."""
-    said = _owned(_several(said), known)
+    parts: list[Part] = []
+    left: list[Words] = []
+    who: Words = ()
+    *before, last = _until_stops(said)
+    for each in (*before, last):
+        words = _owned(_several(_uncounted(each)), known)
+        if not parts and each is not last and not _is_about(words, known):
+            left.append(words)  # `Footsteps; anna ducks`
+            continue
+        if parts and not _is_about(words, known):
+            if _begins(words, known) is None:  # `She stops. Silence.`
+                left.append(words)
+                continue
+            words = (*who, *words)  # `She stops. Turns.`
+        one = _one_sentence(words, known)
+        parts += [replace(one.parts[0], meanwhile=False), *one.parts[1:]] if parts else one.parts
+        left += one.left_out
+        who = words[: _subject(words, known)] or who
+    return Sentence(tuple(parts), tuple(left))
+
+
+def _until_stops(said: Words) -> Iterator[Words]:
+    """The sentences between full stops; there is at least one, be it empty."""
+    ends = [k for k, word in enumerate(said) if word.text == STOP]
+    found = [said[a:b] for a, b in zip([0, *(k + 1 for k in ends)], [*ends, len(said)], strict=True)]
+    yield from [words for words in found if words] or [said[:1]]
+
+
+def _is_about(words: Words, known: Known) -> bool:
+    """Whether words begin with who acts, with a thing that does something, or with when or how it is."""
+    begun = any(word.text in (COMMA, *_CLAUSES, *_LATER) for word in words[:3]) or says_how(words[0])
+    return bool(_subject(words, known)) or begun or thing(words, known, True) is not None
+
+
+def _one_sentence(said: Words, known: Known) -> Sentence:
     begun = _begun(said, known)
     if begun is not None:
         return begun
     said, left = _with_and(said, known)
     parts, clauses = _parts(said, known)
     return Sentence(parts, (*clauses, *left))
+
+
+def _uncounted(said: Words) -> Words:
+    """Without ``for 3 seconds``, ``2 times``."""
+    out: list[ast.Name] = []
+    for word in said:
+        if out and out[-1].text.isdigit() and word.text.removesuffix("s") in _COUNTED:
+            out.pop()
+            if len(out) > 1 and out[-1].text == "for":
+                out.pop()
+            continue
+        out.append(word)
+    return tuple(out)
+
+
+def speaks(said: Words, known: Known) -> Words:
+    """Words with ``talk`` where they say only who says something, and to whom: ``anna to ben``."""
+    said = said[: len(said) - 1] if len(said) > 1 and said[-1].text == COMMA else said
+    count = _subject(said, known)
+    if not count or (len(said) > count and said[count].text not in PREPOSITIONS):
+        return said
+    return (*said[:count], ast.Name(("talk",), said[count - 1].span), *said[count:])
 
 
 def _several(said: Words) -> Words:
@@ -91,7 +151,7 @@ def _several(said: Words) -> Words:
 
 def owner(word: str) -> str:
     """Whose something is by a word as ``carl's``; "" for another word."""
-    return word[:-2] if word.endswith(("'s", "’s")) else ""
+    return word[:-2] if word.casefold().endswith(("'s", "’s")) else ""
 
 
 def one_after_the_other(said: Words, known: Known) -> tuple[Words, tuple[Words, ...]]:
@@ -224,19 +284,24 @@ def _begun(said: Words, known: Known) -> Sentence | None:
     if says_how(first) or fold(first.text) in MANNERS:
         who = _subject(alone, known)
         if not who:
-            return None
+            return _one_sentence(alone, known) if thing(alone, known, True) is not None else None
         how = (first,) if fold(first.text) in MANNERS else ()
-        return sentence((*alone[:who], *how, *alone[who:]), known)  # `suddenly carl jumps up`
+        return _one_sentence((*alone[:who], *how, *alone[who:]), known)  # `suddenly carl jumps up`
+    of_thing = thing(said[:comma], known, True) is not None
+    if of_thing and main and (_subject(main, known) or thing(main, known, True) is not None):
+        of_main = _one_sentence(main, known)  # `the phone rings, ben jumps`
+        return replace(of_main, parts=(Part(said[:comma]), *of_main.parts))
     if known.is_name(first) or not _subject(main, known):
         return None
-    of_main = sentence(main, known)
-    acts = bool(_somebody_acts(clause, known))
+    of_main = _one_sentence(main, known)
+    things_do = thing(clause, known, True) is not None
+    acts = bool(_somebody_acts(clause, known)) or things_do
     if first.text in ("when", "after", "once", "before", "while", "as") and acts:
-        does = sentence(clause, known)
+        does = _one_sentence(clause, known)
         left = (*of_main.left_out, *does.left_out)
         if first.text == "before":
             return Sentence((*of_main.parts, *does.parts), left)
-        if first.text not in ("while", "as"):  # one thing is what the other waits for
+        if first.text not in ("while", "as") or things_do:  # one thing is what the other waits for
             return Sentence((*does.parts, *of_main.parts), left)
         if _is_other(main, clause, known):
             one, *others = of_main.parts
@@ -327,6 +392,9 @@ def _with_and(said: Words, known: Known) -> tuple[Words, tuple[Words, ...]]:
             at += 1
         if not out or at == len(said):
             continue
+        begun = out[_subject(tuple(out), known) :]
+        if begun and len(begun) < len(out) and all(says_how(w) or fold(w.text) in MANNERS for w in begun):
+            continue  # `anna, slowly, opens the fridge`
         joins, part = _after_comma(tuple(out), said[at:], known, third)
         if joins:
             out.append(ast.Name(("and",), word.span))
@@ -363,6 +431,8 @@ def _is_done_besides(before: Words, after: Words, known: Known) -> bool:
     """Whether something more is done from here on, as in ``sits by the window reading a book``."""
     word, last = after[0], before[-1].text if before else ""
     who = _subject(before, known)
+    if any(is_not(each.text) for each in before[who : who + 3]):
+        return False  # `is not sitting`
     if len(before) < who + 2 or not _is_ing(word, known) or known.is_name(word):
         return False
     aux = {last, *plain_forms(last)} & {*AUXILIARIES, "go", "come", "stop"}
@@ -396,6 +466,9 @@ def _parts(said: Words, known: Known) -> tuple[tuple[Part, ...], tuple[Words, ..
             k += 1
             continue
         does = after[1:] if after[:1] != () and after[0].text == "then" else after
+        if word.text in _LATER and thing(does, known, True) is not None:  # `and the door opens`
+            others, more = _parts(does, known)
+            return (Part(said[:k]), *others), (*left, *more)
         if word.text in (*_MEANWHILE, *_LATER) and _somebody_acts(does, known):
             joint = "then" if does is not after else word.text
             meanwhile = joint in _MEANWHILE and _is_other(said, does, known)

@@ -6,7 +6,7 @@ our own bugs: whatever a writer can type ends up as a :class:`Diagnostic`.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Container, Iterable
 from dataclasses import dataclass, field
 from functools import lru_cache
 
@@ -95,9 +95,10 @@ class Report:
         """A point from which on errors can be taken back."""
         return len(self._found)
 
-    def take_back(self, mark: int) -> list[Diagnostic]:
-        """Errors added since a mark, which are no longer kept."""
-        keys = [key for key in list(self._found)[mark:] if self._found[key].severity == "error"]
+    def take_back(self, mark: int, but: Container[str] = ()) -> list[Diagnostic]:
+        """What was added since a mark, but for warnings of some codes; it is no longer kept."""
+        since = list(self._found.items())[mark:]
+        keys = [key for key, each in since if each.severity == "error" or each.code not in but]
         return [self._found.pop(key) for key in keys]
 
     def put_back(self, found: Iterable[Diagnostic]) -> None:
@@ -139,6 +140,7 @@ def nearest(word: str, candidates: Iterable[str]) -> str | None:
 
 def is_slip(word: str, name: str) -> bool:
     """Whether a word is a name but for a letter more, less or other, or two that changed places."""
+    word, name = word.casefold(), name.casefold()
     if abs(len(word) - len(name)) > 1 or len(word) < 3:
         return False
     short = min(len(word), len(name))

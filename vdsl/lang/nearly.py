@@ -12,7 +12,8 @@ from itertools import pairwise
 
 from . import ast
 from .diagnostics import Diagnostic, is_slip
-from .phrases import Known, Words, is_third, of_several, says_how
+from .english import MODALS, PAST, VERBS, is_not
+from .phrases import Words, is_small
 from .pronouns import ALL, BOTH, ONE
 from .source import Span
 from .words import ARTICLES, PREPOSITIONS, fold, plain_forms
@@ -21,26 +22,9 @@ from .words import ARTICLES, PREPOSITIONS, fold, plain_forms
 #: needs a target or takes none, it is done to something else, or to one of several, or its words are no name.
 _FORGIVEN = {"VDS060", "VDS061", "VDS065", "VDS071", "VDS072", "VDS073", "VDS074"}
 _OWN = ("her", "his", "their")
-_IT = ("it", "it's", "there's", "that's")
-_MOST_NOUN_WORDS = 4
-#: Verbs that are no slips of others, and after which a thing does something.
-_HELPERS = (
-    "doesn't",
-    "don't",
-    "won't",
-    "isn't",
-    "can't",
-    "does",
-    "starts",
-    "goes",
-    "is",
-    "has",
-    "was",
-    "tries",
-)
 #: What is named after them has nothing done to it.
 _NOT_TO = ("from", "of", "without")
-_SHORTEST = 3  # letters of a word that may be mistyped
+_SHORTEST = 3  # letters of a word that may be a name
 
 
 def is_told(words: Words, said: str) -> bool:
@@ -48,31 +32,14 @@ def is_told(words: Words, said: str) -> bool:
     first = said.strip().removeprefix("(").split(maxsplit=1)[:1]
     pronoun = bool(first) and first[0].casefold() in (*ONE, *BOTH, *ALL)
     third = any(w.text.endswith("s") and not w.text.endswith("ss") for w in words[1:3])
-    return pronoun or third or any(word.text in (*ARTICLES, *_OWN, *_HELPERS) for word in words)
+    past = any(w.text.endswith("ed") or w.text in PAST for w in words[1:3])
+    marks = (*ARTICLES, *_OWN, *MODALS)
+    return pronoun or third or past or any(word.text in marks or is_not(word.text) for word in words)
 
 
-def thing(words: Words, known: Known) -> Words:
-    """The words that name what a sentence is about in which nobody acts, as ``the phone rings``; () for
-    another."""
-    if words[0].text in _IT[1:] and len(words) > 1:
-        return words[:1]
-    article = words[0].text in ARTICLES
-    noun = tuple(word for word in words if not says_how(word))
-    noun = noun[1:] if article else noun
-    verb = next((k for k in range(1, min(_MOST_NOUN_WORDS + 1, len(noun))) if _is_verb(noun[k:])), 0)
-    end = verb or (len(noun) if article else 0)  # `a loud bang from outside`
-    group = noun[: next((k for k in range(1, end) if noun[k].text in PREPOSITIONS), end)]
-    if not group or any(word.text in known.named for word in group):
-        return ()
-    last = group[-1]
-    is_one = last.text in _IT or known.is_name(last) or any(map(known.is_thing, (last, *of_several(last))))
-    unknown = article and not known.is_person(last.text)
-    slip = any(is_slip(word.text, name) for word in group for name in known.named)
-    return () if slip or not (is_one or unknown) else group
-
-
-def _is_verb(words: Words) -> bool:
-    return is_third(words[0]) or words[0].text in _HELPERS
+def is_negated(words: Words) -> bool:
+    """Whether a sentence says what somebody does not do: ``anna doesn't move``."""
+    return any(is_not(word.text) for word in words[1:3])
 
 
 def is_forgiven(wrong: Sequence[Diagnostic], actions: Collection[str], things: Collection[str]) -> bool:
@@ -93,18 +60,33 @@ def why(wrong: Diagnostic) -> str:
 def _is_slip(wrong: Diagnostic, actions: Collection[str], things: Collection[str]) -> bool:
     word = fold(wrong.span.text)
     if wrong.code == "VDS071":
-        forms = {word, *plain_forms(word)}
-        return wrong.span.text not in _HELPERS and any(
-            is_mistyped(form, name) for form in forms for name in actions
-        )
-    meant = wrong.suggestion and fold(wrong.suggestion)
-    near = bool(meant and abs(len(meant) - len(word)) <= 1)
-    return near or (wrong.code == "VDS060" and any(is_mistyped(word, name) for name in things))
+        return is_mistyped(wrong.span.text, actions)
+    if (
+        word in things
+        or word in VERBS
+        or word in (*ONE, *BOTH)
+        or is_small(word)
+        or wrong.code != "VDS060"
+        or len(word) < _SHORTEST
+    ):
+        return False
+    near = wrong.suggestion is not None and is_slip(word, fold(wrong.suggestion)) and len(word) > _SHORTEST
+    return near or any(is_mixed_up(word, name) for name in things)
 
 
-def is_mistyped(word: str, name: str) -> bool:
-    """Whether a word is a name but that a letter is missing or twice there, or two changed places. Of English
-    verbs too many are a letter more or other than some action: ``weaves``, ``chugs``, ``blows``."""
+def is_mistyped(verb: str, actions: Collection[str]) -> bool:
+    """Whether a word is no English verb that is known here, but an action's but for a letter."""
+    word = fold(verb)
+    if {word, *plain_forms(word)} & VERBS or verb in MODALS or is_not(verb):
+        return False
+    forms = {form for name in actions for form in (name, f"{name}s", f"{name}es")}
+    return any(is_slip(word, form) for form in forms)
+
+
+def is_mixed_up(word: str, name: str) -> bool:
+    """Whether a word is a name but that a letter is missing or twice there, or two changed places: of short
+    names other words are a letter more or other (``bend``)."""
+    word, name = word.casefold(), name.casefold()
     if word == name or len(word) < _SHORTEST or not is_slip(word, name):
         return False
     twice = any(word[:k] + word[k + 1 :] == name and word[k] == word[k - 1] for k in range(1, len(word)))
@@ -122,18 +104,31 @@ def readings(
     before = {id(word): last.text for last, word in pairwise(rest)}
     names = [name for name in names if before.get(id(name)) not in _NOT_TO]
     if verb:
-        linked: list[ast.Name] = []
-        for k, word in enumerate(rest):
-            if any(word is name for name in names):
-                linked += [rest[k - 1], word] if k and rest[k - 1].text in PREPOSITIONS else [word]
-        if linked:
-            yield (who, *verb, *linked)
+        for some in _choices(names):
+            linked = [_linked(name, rest) for name in some]
+            yield (who, *verb, *(word for words in linked for word in words))
         for name in names:
             yield (who, *verb, name)
     if verb and alone:
         yield (who, *verb)
-    span = (verb or rest or (who,))[0].span
-    yield from looks(who, names, span)
+    yield from looks(who, names, (verb or rest or (who,))[0].span)
+
+
+def _choices(names: Sequence[ast.Name]) -> Iterator[Sequence[ast.Name]]:
+    """Names that may all belong to an action: all, the first and the last, the first two, one by one."""
+    if len(names) > 2:
+        yield names
+        yield (names[0], names[-1])
+    if len(names) > 1:
+        yield names[:2]
+    for name in names:
+        yield (name,)
+
+
+def _linked(name: ast.Name, rest: Words) -> Words:
+    """A name with the preposition before it."""
+    k = next(k for k, word in enumerate(rest) if word is name)
+    return (rest[k - 1], name) if k and rest[k - 1].text in PREPOSITIONS else (name,)
 
 
 def looks(who: ast.Name, names: Sequence[ast.Name], span: Span) -> Iterator[Words]:

@@ -11,6 +11,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 from . import ast
+from .english import MODALS
 from .pronouns import ALL, BOTH, ONE, Mentions
 from .words import ARTICLES, PREPOSITIONS, WHERE, plain_forms
 
@@ -287,6 +288,11 @@ def _target_of(begins: Words, said: Words, later: bool, is_name: Callable[[ast.N
     words = tuple(w for w in words if is_name(w) or w.text in _COUNTING or not says_how(w))
     words = tuple(word for word in words if is_name(word) or word.text not in (*BODY, *_HOW, *_EVERYWHERE))
     return (*begins, *words) if words else ()
+
+
+def is_small(word: str) -> bool:
+    """Whether a word is one for how, when or why: of somebody called so it is no name where it is small."""
+    return word in _HOW or word in ADVERBS or word in PREPOSITIONS or word in MODALS or word in AUXILIARIES
 
 
 def says_how(word: ast.Name) -> bool:

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from itertools import pairwise
 
-from . import ast, phrases, words
+from . import ast, phrases, pronouns, words
 from .bringing import carried_called
 from .catalog import CatalogLike
 from .definitions.types import DefinitionBase
@@ -397,7 +397,9 @@ def unknown_character(word: ast.Name, characters: tuple[str, ...], report: Repor
     meant = nearest(word.text, characters)
     if characters:
         known = f"characters are {listing(characters, last='and')}"
-        help = f"{known}; a line `character {word.text} = man` makes one more"
+        help = known
+        if pronouns.is_person(word.text) or word.span.text.istitle():
+            help = f"{known}; a line `character {word.text} = man` makes one more"
         if word.text in phrases.PRONOUNS:
             help = f"say who by name, of {listing(characters, last='and')}"
     else:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from . import ast, ir
 from .camera import CameraWords
+from .capitals import Named
 from .diagnostics import Report, listing
 from .ir import Target
 from .targets import unknown_character
@@ -47,6 +48,9 @@ def read_view(
     """The view a camera asks for, with everybody found; errors where somebody is missing."""
     if not said.view or node is None:
         return View(said)
+    if said.whose is not None:
+        whose = Named(context.cast, lambda word: False)(said.whose.text)
+        said = replace(said, whose=ast.Name((whose,), said.whose.span))
     scales = said.scales if "scale" in said.said else _SCALES[said.view]
     movements = said.movements if "movement" in said.said else _MOVEMENTS[said.view]
     words = replace(said, scales=scales, movements=movements)

@@ -10,6 +10,7 @@ import re
 from dataclasses import dataclass
 
 from . import ir
+from .english import PAST
 
 PAPER_SCALES = ("close-up", "medium", "full")
 
@@ -206,8 +207,12 @@ ARTICLES = (
 
 def plain_forms(verb: str) -> tuple[str, ...]:
     """What a verb in the third person may be the form of: ``walks`` of ``walk``, ``pushes``, ``carries``;
-    and one in ``ing``: ``crying``, ``waving``, ``sitting``."""
-    forms = []
+    one in ``ing``: ``crying``, ``waving``, ``sitting``; and a past: ``waved``, ``stopped``, ``ran``."""
+    forms = [PAST[verb]] if verb in PAST else []
+    if verb.endswith("ed"):
+        stem = verb[:-2]
+        forms += [stem, f"{stem}e", *([stem[:-1]] if stem[-2:-1] == stem[-1:] else [])]
+        forms += [f"{verb[:-3]}y"] if verb.endswith("ied") else []
     if verb.endswith("ing"):
         stem = verb[:-3]
         forms += [stem, f"{stem}e", *([stem[:-1]] if stem[-2:-1] == stem[-1:] else [])]

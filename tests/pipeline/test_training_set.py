@@ -362,6 +362,20 @@ def test_where_few_stories_get_pictures_the_others_have_guides_alone(
         film(framed + 1)
 
 
+def test_all_clips_of_a_story_may_get_pictures(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("vdsl.pipeline.dataset.Troupe", partial(Troupe, lines=1, cameras=1))
+    film = partial(generate, seed=4, device="cpu", size=48, processes=1)
+    film(tmp_path / "some", 1)
+    film(tmp_path / "all", 1, every=True)
+    some, every = Dataset(tmp_path / "some"), Dataset(tmp_path / "all")
+    assert not any(label.bare for label in every.labels)
+    assert len(every) == len(some) > sum(not label.bare for label in some.labels)
+    again = every.clip(len(every) - 1, range(8), 48)
+    assert again.std() > 10
+    with pytest.raises(RankerError, match="another kind"):
+        film(tmp_path / "all", len(every) + 1)
+
+
 @pytest.mark.slow
 def test_several_processes_make_the_set_that_one_makes(tmp_path: Path) -> None:
     for processes in (1, 2):

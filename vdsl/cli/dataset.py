@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
 from typing import Annotated
 
@@ -13,7 +14,7 @@ from .compile import Device
 def dataset(
     out: Annotated[Path, typer.Argument(help="Folder for the training set; one begun is gone on with.")],
     clips: Annotated[
-        int, typer.Option(min=0, help="Clips to film with pictures, half of them good.")
+        int, typer.Option(min=0, help="Clips to film with pictures, half of them good unless `--every`.")
     ] = 10_000,
     seed: Annotated[int, typer.Option(min=0, help="Seed of the stories.")] = 0,
     size: Annotated[int, typer.Option(min=32, max=512, help="Side of the pictures, in pixels.")] = 224,
@@ -26,6 +27,14 @@ def dataset(
             "which are far more quickly made.",
         ),
     ] = 1.0,
+    every: Annotated[
+        bool,
+        typer.Option(
+            "--every",
+            help="Give pictures to all clips of these stories, also what is passed over and spoilt besides: "
+            "five times as many in hardly more time, four in five of them bad.",
+        ),
+    ] = False,
     positives: Annotated[
         Path | None,
         typer.Option(
@@ -59,5 +68,6 @@ def dataset(
         if picks:
             added += add_picks(out, picks, seed, size)
         with Bars(console) as bars:
-            filmed = generate(out, clips, seed, device.value, bars, size, pictures=pictures) if clips else 0
+            film = partial(generate, progress=bars, size=size, pictures=pictures, every=every)
+            filmed = film(out, clips, seed, device.value) if clips else 0
     print(f"{out}: {filmed or added} clips" + (f", {added} of them added from films" if added else ""))

@@ -11,7 +11,7 @@ from dataclasses import replace
 
 from runtime.motion.manner import MANNERS
 
-from . import ast, capitals, clauses, nearly, phrases, pronouns, words
+from . import ast, capitals, clauses, nearly, phrases, pronouns, sentences, words
 from .catalog import CatalogLike
 from .definitions.types import DefinitionBase
 from .diagnostics import Report, listing, nearest
@@ -172,13 +172,13 @@ class BeatReader:
         besides: list[ast.BeatNode] = []
         for beat in node.beats:
             said = capitals.small(beat.words, self.targets.is_name, self.characters)
-            read = clauses.sentence(said, self.known())
+            read = sentences.sentence(said, self.known())
             for left in read.left_out:
                 span = left[0].span.to(left[-1].span)
                 self.report.warn("VDS082", span, label=f"`{span.text}` is left out", help=_NOT_SHOWN)
             of_things = [thing(part.words, self.known()) is not None for part in read.parts]
             first, *others = (
-                clauses.speaks(words, self.known()) if beat.spoken else words
+                sentences.speaks(words, self.known()) if beat.spoken else words
                 for words in (self._named_in(read.parts, n) for n in range(len(read.parts)))
             )
             whole = len(read.parts) == 1 and first[0].span == beat.words[0].span

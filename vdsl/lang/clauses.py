@@ -1,12 +1,11 @@
-"""Sentences in the words of one beat: ``while ben cooks``, ``, smiling``, ``carl's hand``.
+"""Clauses of one sentence: ``while ben cooks``, ``, smiling``, ``carl's hand``, ``as the phone rings``.
 
-Assumes the words of one beat as they are written, commas among them. Guarantees parts in the order they are
+Assumes the words of a sentence as they are written, commas among them. Guarantees parts in the order they are
 done in, each beginning with who does it, without commas and possessives, and that what is left out is told.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 from runtime.motion.manner import MANNERS
@@ -20,12 +19,12 @@ from .things import thing
 from .words import ARTICLES, PREPOSITIONS, fold, plain_forms
 
 #: What they begin does not show: why, when, or what somebody thinks of it.
-_CLAUSES = (
+CLAUSES = (
     "as", "because", "but", "if", "like", "since", "so", "than", "till", "unless", "until", "when", "where",
     "which", "while", "who", "without",
 )  # fmt: skip
 #: What somebody else does is at the same time, or later.
-_MEANWHILE, _LATER = ("while", "as", "and"), ("and", "then")
+_MEANWHILE, LATER = ("while", "as", "and"), ("and", "then")
 #: Whose something is, before it, and who that is.
 OWNERS = {"his": "he", "her": "she"}
 #: What a part of a body does is what its owner does: `her hands tremble`.
@@ -45,14 +44,7 @@ _PERCEIVES = {
     "wave",
     "point",
 }
-COMMA, STOP = ",", "."
-_COUNTED = ("second", "minute", "hour", "time", "step", "metre", "meter")
-_SEVERAL = {
-    ("both", "of", "them"): "both",
-    ("the", "two", "of", "them"): "both",
-    ("the", "two"): "both",
-    ("all", "of", "them"): "all",
-}
+COMMA = ","
 _MOST_ACTION_WORDS = 3
 
 
@@ -72,81 +64,14 @@ class Sentence:
     left_out: tuple[Words, ...] = ()
 
 
-def sentence(said: Words, known: Known) -> Sentence:
-    """The words of a beat as they are written, taken apart."""
-    parts: list[Part] = []
-    left: list[Words] = []
-    who: Words = ()
-    *before, last = _until_stops(said)
-    for each in (*before, last):
-        words = _owned(_several(_uncounted(each)), known)
-        if not parts and each is not last and not _is_about(words, known):
-            left.append(words)  # `Footsteps; anna ducks`
-            continue
-        if parts and not _is_about(words, known):
-            if _begins(words, known) is None:  # `She stops. Silence.`
-                left.append(words)
-                continue
-            words = (*who, *words)  # `She stops. Turns.`
-        one = _one_sentence(words, known)
-        parts += [replace(one.parts[0], meanwhile=False), *one.parts[1:]] if parts else one.parts
-        left += one.left_out
-        who = words[: _subject(words, known)] or who
-    return Sentence(tuple(parts), tuple(left))
-
-
-def _until_stops(said: Words) -> Iterator[Words]:
-    """The sentences between full stops; there is at least one, be it empty."""
-    ends = [k for k, word in enumerate(said) if word.text == STOP]
-    found = [said[a:b] for a, b in zip([0, *(k + 1 for k in ends)], [*ends, len(said)], strict=True)]
-    yield from [words for words in found if words] or [said[:1]]
-
-
-def _is_about(words: Words, known: Known) -> bool:
-    """Whether words begin with who acts, with a thing that does something, or with when or how it is."""
-    begun = any(word.text in (COMMA, *_CLAUSES, *_LATER) for word in words[:3]) or says_how(words[0])
-    return bool(_subject(words, known)) or begun or thing(words, known, True) is not None
-
-
-def _one_sentence(said: Words, known: Known) -> Sentence:
+def one_sentence(said: Words, known: Known) -> Sentence:
+    """The words of a sentence without possessives, taken apart."""
     begun = _begun(said, known)
     if begun is not None:
         return begun
     said, left = _with_and(said, known)
     parts, clauses = _parts(said, known)
     return Sentence(parts, (*clauses, *left))
-
-
-def _uncounted(said: Words) -> Words:
-    """Without ``for 3 seconds``, ``2 times``."""
-    out: list[ast.Name] = []
-    for word in said:
-        if out and out[-1].text.isdigit() and word.text.removesuffix("s") in _COUNTED:
-            out.pop()
-            if len(out) > 1 and out[-1].text == "for":
-                out.pop()
-            continue
-        out.append(word)
-    return tuple(out)
-
-
-def speaks(said: Words, known: Known) -> Words:
-    """Words with ``talk`` where they say only who says something, and to whom: ``anna to ben``."""
-    said = said[: len(said) - 1] if len(said) > 1 and said[-1].text == COMMA else said
-    count = _subject(said, known)
-    if not count or (len(said) > count and said[count].text not in PREPOSITIONS):
-        return said
-    return (*said[:count], ast.Name(("talk",), said[count - 1].span), *said[count:])
-
-
-def _several(said: Words) -> Words:
-    """``both`` for ``both of them`` and ``the two``, ``all`` for ``all of them``."""
-    texts = [word.text for word in said[:4]]
-    for phrase, one in _SEVERAL.items():
-        count = len(phrase)
-        if tuple(texts[:count]) == phrase:
-            return (ast.Name((one,), said[0].span.to(said[count - 1].span)), *said[count:])
-    return said
 
 
 def owner(word: str) -> str:
@@ -157,7 +82,7 @@ def owner(word: str) -> str:
 def one_after_the_other(said: Words, known: Known) -> tuple[Words, tuple[Words, ...]]:
     """Who acts, and what they do one after the other: ``sits down`` and ``reads`` of ``ben sits down and
     reads``."""
-    count = max(1, _subject(said, known))
+    count = max(1, subject(said, known))
     who, rest = said[:count], said[count:]
     third = _is_prose(said, known)
     cuts: list[tuple[int, int]] = []
@@ -174,7 +99,7 @@ def _goes_on(rest: Words, k: int, known: Known, third: bool) -> int | None:
     """Where a verb in the form of the first one stands after the ``and`` at ``k``; None for nowhere."""
     after = rest[k + 1 :]
     at = next((n for n, word in enumerate(after) if not says_how(word)), len(after) - 1)
-    found = _begins(after, known, third if rest[k].span.text == "and" else None)
+    found = begins(after, known, third if rest[k].span.text == "and" else None)
     if found is None and (not third or not phrases.looks_like_a_verb(after[at:], known.is_thing)):
         return None
     at = k + 1 + (at if found is None else found)
@@ -195,7 +120,7 @@ def _goes_on(rest: Words, k: int, known: Known, third: bool) -> int | None:
 # --- who acts, and verbs -----------------------------------------------------------------
 
 
-def _subject(said: Words, known: Known) -> int:
+def subject(said: Words, known: Known) -> int:
     """How many words name who acts at the beginning of some; 0 for nobody."""
     if not said or not (said[0].text in known.named or said[0].text in (*ONE, *BOTH, *ALL)):
         return 0
@@ -207,7 +132,7 @@ def _subject(said: Words, known: Known) -> int:
     ):
         after = said[count + 2 :]
         if said[count].text == COMMA and after and after[0].text not in ("and", COMMA) and count == 1:
-            alone = len(said) > count + 2 and _begins(after, known) is not None and not is_third(after[0])
+            alone = len(said) > count + 2 and begins(after, known) is not None and not is_third(after[0])
             if not alone:  # `anna, ben and carl` is a list, `anna, ben waves` is none
                 break
         count += 2
@@ -215,12 +140,12 @@ def _subject(said: Words, known: Known) -> int:
 
 
 def _subjects(said: Words, known: Known) -> tuple[str, ...]:
-    return tuple(word.text for word in said[: _subject(said, known)] if word.text not in ("and", COMMA))
+    return tuple(word.text for word in said[: subject(said, known)] if word.text not in ("and", COMMA))
 
 
 def _is_prose(said: Words, known: Known) -> bool:
     """Whether the first verb is in the third person."""
-    verb = next((word for word in _does(said, _subject(said, known)) if not says_how(word)), None)
+    verb = next((word for word in _does(said, subject(said, known)) if not says_how(word)), None)
     return verb is not None and is_third(verb)
 
 
@@ -238,7 +163,7 @@ def _is_ing(word: ast.Name, known: Known) -> bool:
     return any(len(form) > 2 and known.is_action((ast.Name((form,), word.span),)) for form in forms)
 
 
-def _begins(after: Words, known: Known, third: bool | None = None) -> int | None:
+def begins(after: Words, known: Known, third: bool | None = None) -> int | None:
     """After how many words for the manner an action begins; None where none does. third: whether its verb is
     in the third person, or a participle; None for either"""
     at = 0
@@ -260,14 +185,14 @@ def _begins(after: Words, known: Known, third: bool | None = None) -> int | None
 
 def _somebody_acts(after: Words, known: Known) -> int:
     """How many words name who does something by some; 0 where nobody does, or nothing."""
-    count = _subject(after, known)
+    count = subject(after, known)
     if count:
         does = _does(after, count)
         unknown = bool(does) and is_third(does[0]) and not {*plain_forms(does[0].text)} & {*AUXILIARIES, "ha"}
         named = after[0].text in known.named
-        return count if _begins(does, known) is not None or (named and unknown and len(does) > 0) else 0
+        return count if begins(does, known) is not None or (named and unknown and len(does) > 0) else 0
     slip = bool(after) and _is_slip(after[:1], known)
-    return 1 if slip and _begins(after[1:], known, True) is not None else 0
+    return 1 if slip and begins(after[1:], known, True) is not None else 0
 
 
 # --- what stands before who acts ---------------------------------------------------------
@@ -275,29 +200,29 @@ def _somebody_acts(after: Words, known: Known) -> int:
 
 def _begun(said: Words, known: Known) -> Sentence | None:
     """``while ben cooks, anna reads``; None for what begins with who acts."""
-    if not said or _subject(said, known) or said[0].text == COMMA:
+    if not said or subject(said, known) or said[0].text == COMMA:
         return None
     first, rest = said[0], said[1:]
     comma = next((k for k, word in enumerate(said) if word.text == COMMA), len(said))
     clause, main = said[1:comma], said[comma + 1 :]
     alone = rest[1:] if rest[:1] != () and rest[0].text == COMMA else rest
     if says_how(first) or fold(first.text) in MANNERS:
-        who = _subject(alone, known)
+        who = subject(alone, known)
         if not who:
-            return _one_sentence(alone, known) if thing(alone, known, True) is not None else None
+            return one_sentence(alone, known) if thing(alone, known, True) is not None else None
         how = (first,) if fold(first.text) in MANNERS else ()
-        return _one_sentence((*alone[:who], *how, *alone[who:]), known)  # `suddenly carl jumps up`
+        return one_sentence((*alone[:who], *how, *alone[who:]), known)  # `suddenly carl jumps up`
     of_thing = thing(said[:comma], known, True) is not None
-    if of_thing and main and (_subject(main, known) or thing(main, known, True) is not None):
-        of_main = _one_sentence(main, known)  # `the phone rings, ben jumps`
+    if of_thing and main and (subject(main, known) or thing(main, known, True) is not None):
+        of_main = one_sentence(main, known)  # `the phone rings, ben jumps`
         return replace(of_main, parts=(Part(said[:comma]), *of_main.parts))
-    if known.is_name(first) or not _subject(main, known):
+    if known.is_name(first) or not subject(main, known):
         return None
-    of_main = _one_sentence(main, known)
+    of_main = one_sentence(main, known)
     things_do = thing(clause, known, True) is not None
     acts = bool(_somebody_acts(clause, known)) or things_do
     if first.text in ("when", "after", "once", "before", "while", "as") and acts:
-        does = _one_sentence(clause, known)
+        does = one_sentence(clause, known)
         left = (*of_main.left_out, *does.left_out)
         if first.text == "before":
             return Sentence((*of_main.parts, *does.parts), left)
@@ -307,13 +232,13 @@ def _begun(said: Words, known: Known) -> Sentence | None:
             one, *others = of_main.parts
             while_ = (replace(part, meanwhile=True) for part in does.parts)
             return Sentence((one, *while_, *others), left)
-    if first.text in (*_CLAUSES, "after", "before", "once"):
+    if first.text in (*CLAUSES, "after", "before", "once"):
         return replace(of_main, left_out=(said[:comma], *of_main.left_out))
     if first.text in PREPOSITIONS or _is_ing(first, known):  # `on the sofa, ben sleeps`; `smiling, anna nods`
         joint = () if first.text in PREPOSITIONS else (ast.Name(("and",), said[comma].span),)
         one, *others = of_main.parts
         return replace(of_main, parts=(Part((*one.words, *joint, *said[:comma])), *others))
-    if _begins(clause, known) is None and not _is_slip(
+    if begins(clause, known) is None and not _is_slip(
         said[:comma], known
     ):  # `awkward silence, they look away`
         return replace(of_main, left_out=(said[:comma], *of_main.left_out))
@@ -327,7 +252,7 @@ def _is_slip(said: Words, known: Known) -> bool:
 # --- whose something is ------------------------------------------------------------------
 
 
-def _owned(said: Words, known: Known) -> Words:
+def owned(said: Words, known: Known) -> Words:
     """Without possessives: ``kiss anna by hand`` for ``kiss anna's hand``, ``anna tremble`` for ``anna's
     hands tremble``; whose thing it is shows only where somebody has one."""
     out: list[ast.Name] = []
@@ -392,7 +317,7 @@ def _with_and(said: Words, known: Known) -> tuple[Words, tuple[Words, ...]]:
             at += 1
         if not out or at == len(said):
             continue
-        begun = out[_subject(tuple(out), known) :]
+        begun = out[subject(tuple(out), known) :]
         if begun and len(begun) < len(out) and all(says_how(w) or fold(w.text) in MANNERS for w in begun):
             continue  # `anna, slowly, opens the fridge`
         joins, part = _after_comma(tuple(out), said[at:], known, third)
@@ -410,9 +335,9 @@ def _after_comma(before: Words, after: Words, known: Known, third: bool) -> tupl
         len(before) == 1 or before[-2].text in (*_MEANWHILE, "then")
     )
     does = after[1:] if after[0].text == "then" else after
-    other = bool(_somebody_acts(does, known)) or (subjects and bool(_subject(does, known)))
+    other = bool(_somebody_acts(does, known)) or (subjects and bool(subject(does, known)))
     verb = third and phrases.looks_like_a_verb(does, known.is_thing)
-    acts = verb or (bool(does) and _begins(does, known, third) is not None)
+    acts = verb or (bool(does) and begins(does, known, third) is not None)
     if before[-1].text == "and" or (subjects and not other):
         if acts:
             return False, ()  # `anna, annoyed, sits down`: it comes after the second
@@ -430,22 +355,22 @@ def _after_comma(before: Words, after: Words, known: Known, third: bool) -> tupl
 def _is_done_besides(before: Words, after: Words, known: Known) -> bool:
     """Whether something more is done from here on, as in ``sits by the window reading a book``."""
     word, last = after[0], before[-1].text if before else ""
-    who = _subject(before, known)
+    who = subject(before, known)
     if any(is_not(each.text) for each in before[who : who + 3]):
         return False  # `is not sitting`
     if len(before) < who + 2 or not _is_ing(word, known) or known.is_name(word):
         return False
     aux = {last, *plain_forms(last)} & {*AUXILIARIES, "go", "come", "stop"}
-    belongs = (*ARTICLES, *PREPOSITIONS, *_CLAUSES, "and", COMMA)  # `the blinking light`
+    belongs = (*ARTICLES, *PREPOSITIONS, *CLAUSES, "and", COMMA)  # `the blinking light`
     if aux or last in belongs or any(each.text == "with" for each in before) or _is_of_another(before, known):
         return False
     whole = (known.is_action((*before[at:], word)) for at in range(who, len(before)))
-    return _begins(after, known) == 0 and not any(whole)
+    return begins(after, known) == 0 and not any(whole)
 
 
 def _is_of_another(before: Words, known: Known) -> bool:
     """Whether what is done after some words is done by whom or by what they end in: ``watches ben …``."""
-    verb = before[_subject(before, known)]
+    verb = before[subject(before, known)]
     perceives = {verb.text, *plain_forms(verb.text)} & _PERCEIVES
     return before[-1].text in (*known.named, "him", "them", "her") or bool(perceives)
 
@@ -457,7 +382,7 @@ def _parts(said: Words, known: Known) -> tuple[tuple[Part, ...], tuple[Words, ..
     """Who does what, one part for all that the same people do one after the other; and the clauses of which
     nothing shows."""
     left: list[Words] = []
-    who, third = _subject(said, known), _is_prose(said, known)
+    who, third = subject(said, known), _is_prose(said, known)
     k = who + 1
     while k < len(said):
         word, after = said[k], said[k + 1 :]
@@ -466,15 +391,15 @@ def _parts(said: Words, known: Known) -> tuple[tuple[Part, ...], tuple[Words, ..
             k += 1
             continue
         does = after[1:] if after[:1] != () and after[0].text == "then" else after
-        if word.text in _LATER and thing(does, known, True) is not None:  # `and the door opens`
+        if word.text in LATER and thing(does, known, True) is not None:  # `and the door opens`
             others, more = _parts(does, known)
             return (Part(said[:k]), *others), (*left, *more)
-        if word.text in (*_MEANWHILE, *_LATER) and _somebody_acts(does, known):
+        if word.text in (*_MEANWHILE, *LATER) and _somebody_acts(does, known):
             joint = "then" if does is not after else word.text
             meanwhile = joint in _MEANWHILE and _is_other(said, does, known)
             if joint == "and" and _is_done_to(said[:k], does, known):
                 meanwhile = False  # `gives the cup to ben and he drinks`
-            if meanwhile or joint in _LATER:
+            if meanwhile or joint in LATER:
                 others, more = _parts(does, known)
                 first = replace(others[0], meanwhile=meanwhile)
                 return (Part(said[:k]), first, *others[1:]), (*left, *more)
@@ -482,9 +407,9 @@ def _parts(said: Words, known: Known) -> tuple[tuple[Part, ...], tuple[Words, ..
             said = (*said[:k], ast.Name(("and",), word.span), *after)
             continue
         after_ing = word.text == "after" and bool(after) and _is_ing(after[0], known)
-        thought = word.text == "that" and bool(_subject(after, known))  # `the letter that she wrote`
+        thought = word.text == "that" and bool(subject(after, known))  # `the letter that she wrote`
         purpose = word.text == "to" and _is_purpose(said, k, known)
-        if word.text in _CLAUSES or after_ing or thought or purpose or _is_let(said, k, known, third):
+        if word.text in CLAUSES or after_ing or thought or purpose or _is_let(said, k, known, third):
             end = _clause_end(said, k, known, third)
             left.append(said[k:end])
             said = (*said[:k], *said[end:])
@@ -496,10 +421,10 @@ def _parts(said: Words, known: Known) -> tuple[tuple[Part, ...], tuple[Words, ..
 def _clause_end(said: Words, begin: int, known: Known, third: bool) -> int:
     """Where a clause ends: before the next ``and`` or ``then`` after which something is done."""
     for k in range(begin + 1, len(said) - 1):
-        if said[k].text not in _LATER:
+        if said[k].text not in LATER:
             continue
         does = said[k + 2 :] if said[k + 1].text == "then" else said[k + 1 :]
-        if does and (_somebody_acts(does, known) or _begins(does, known, third) is not None):
+        if does and (_somebody_acts(does, known) or begins(does, known, third) is not None):
             return k
     return len(said)
 
@@ -519,7 +444,7 @@ def _is_other(said: Words, after: Words, known: Known) -> bool:
 
 def _is_done_to(before: Words, after: Words, known: Known) -> bool:
     """Whether somebody acts to whom something has just been done."""
-    named = [word.text for word in before[_subject(before, known) :] if word.text in known.named]
+    named = [word.text for word in before[subject(before, known) :] if word.text in known.named]
     others = _subjects(after, known)
     return any(who in named or (who in ONE and known.may_be(who, name)) for who in others for name in named)
 
@@ -527,28 +452,28 @@ def _is_done_to(before: Words, after: Words, known: Known) -> bool:
 def _is_let(said: Words, at: int, known: Known, third: bool) -> bool:
     """Whether what somebody else does begins at a place: ``helps ben sit down``, ``watches ben cooking``."""
     word = said[at]
-    joined = said[at - 1].text in (*_LATER, COMMA)
-    if at < _subject(said, known) + 2 or not _is_of_another(said[:at], known) or not third or joined:
+    joined = said[at - 1].text in (*LATER, COMMA)
+    if at < subject(said, known) + 2 or not _is_of_another(said[:at], known) or not third or joined:
         return False
     if _is_ing(word, known):
-        return _begins(said[at:], known) == 0
+        return begins(said[at:], known) == 0
     whom = said[at - 1].text in (*known.named, "him", "them")
     if not whom or is_third(word) or word.text in PREPOSITIONS or says_how(word):
         return False
-    return _begins(said[at:], known) == 0
+    return begins(said[at:], known) == 0
 
 
 def _is_purpose(said: Words, at: int, known: Known) -> bool:
     """Whether ``to`` at a place says what something is done for, as in ``stops to catch his breath``."""
     after = said[at + 1 :]
-    if not after or is_third(after[0]) or _begins(after, known) != 0:
+    if not after or is_third(after[0]) or begins(after, known) != 0:
         return False
     joint = tuple(word.text for word in after[:2])
     if len(joint) == 2 and any(
         known.is_name(ast.Name((mark.join(joint),), after[0].span)) for mark in ("_", "-")
     ):
         return False  # `to the dance floor`
-    begin = max((k + 1 for k in range(at) if said[k].text in _LATER), default=_subject(said, known))
+    begin = max((k + 1 for k in range(at) if said[k].text in LATER), default=subject(said, known))
     done, last = said[begin:at], said[at - 1].text
     if phrases.about_to(done, known.is_action, known.is_name) or phrases.about_to(
         said[begin:], known.is_action, known.is_name

@@ -1,0 +1,93 @@
+"""What a beat says, sentence by sentence: ``She stops. The phone rings; both of them look up.``
+
+Assumes the words of one beat as they are written, full stops and commas among them. Guarantees parts in the
+order they are done in, each beginning with who does it, and that what is left out is told.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+from . import ast
+from .clauses import CLAUSES, COMMA, LATER, Part, Sentence, begins, one_sentence, owned, subject
+from .phrases import Known, Words, says_how
+from .things import thing
+from .words import PREPOSITIONS
+
+STOP = "."
+_COUNTED = ("second", "minute", "hour", "time", "step", "metre", "meter")
+_SEVERAL = {
+    ("both", "of", "them"): "both",
+    ("the", "two", "of", "them"): "both",
+    ("the", "two"): "both",
+    ("all", "of", "them"): "all",
+}
+
+
+def sentence(said: Words, known: Known) -> Sentence:
+    """The words of a beat as they are written, taken apart."""
+    parts: list[Part] = []
+    left: list[Words] = []
+    who: Words = ()
+    *before, last = _until_stops(said)
+    for each in (*before, last):
+        words = owned(_several(_uncounted(each)), known)
+        if not parts and each is not last and not _is_about(words, known):
+            left.append(words)  # `Footsteps; anna ducks`
+            continue
+        if parts and not _is_about(words, known):
+            if begins(words, known) is None:  # `She stops. Silence.`
+                left.append(words)
+                continue
+            words = (*who, *words)  # `She stops. Turns.`
+        one = one_sentence(words, known)
+        parts += [replace(one.parts[0], meanwhile=False), *one.parts[1:]] if parts else one.parts
+        left += one.left_out
+        who = words[: subject(words, known)] or who
+    return Sentence(tuple(parts), tuple(left))
+
+
+def speaks(said: Words, known: Known) -> Words:
+    """Words with ``talk`` where they say only who says something, and to whom: ``anna to ben``."""
+    said = said[: len(said) - 1] if len(said) > 1 and said[-1].text == COMMA else said
+    count = subject(said, known)
+    if not count or (len(said) > count and said[count].text not in PREPOSITIONS):
+        return said
+    return (*said[:count], ast.Name(("talk",), said[count - 1].span), *said[count:])
+
+
+def _until_stops(said: Words) -> Iterator[Words]:
+    """The sentences between full stops; there is at least one, be it empty."""
+    ends = [k for k, word in enumerate(said) if word.text == STOP]
+    found = [said[a:b] for a, b in zip([0, *(k + 1 for k in ends)], [*ends, len(said)], strict=True)]
+    yield from [words for words in found if words] or [said[:1]]
+
+
+def _is_about(words: Words, known: Known) -> bool:
+    """Whether words begin with who acts, with a thing that does something, or with when or how it is."""
+    begun = any(word.text in (COMMA, *CLAUSES, *LATER) for word in words[:3]) or says_how(words[0])
+    return bool(subject(words, known)) or begun or thing(words, known, True) is not None
+
+
+def _uncounted(said: Words) -> Words:
+    """Without ``for 3 seconds``, ``2 times``."""
+    out: list[ast.Name] = []
+    for word in said:
+        if out and out[-1].text.isdigit() and word.text.removesuffix("s") in _COUNTED:
+            out.pop()
+            if len(out) > 1 and out[-1].text == "for":
+                out.pop()
+            continue
+        out.append(word)
+    return tuple(out)
+
+
+def _several(said: Words) -> Words:
+    """``both`` for ``both of them`` and ``the two``, ``all`` for ``all of them``."""
+    texts = [word.text for word in said[:4]]
+    for phrase, one in _SEVERAL.items():
+        count = len(phrase)
+        if tuple(texts[:count]) == phrase:
+            return (ast.Name((one,), said[0].span.to(said[count - 1].span)), *said[count:])
+    return said

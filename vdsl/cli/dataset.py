@@ -32,7 +32,7 @@ def dataset(
         typer.Option(
             "--every",
             help="Give pictures to all clips of these stories, also what is passed over and spoilt besides: "
-            "five times as many in hardly more time, four in five of them bad.",
+            "five times as many in hardly more time, five in six of them bad.",
         ),
     ] = False,
     positives: Annotated[

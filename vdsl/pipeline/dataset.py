@@ -101,7 +101,7 @@ def generate(
 
     size: side of the frames in pixels; processes: None for one on each core; pictures: share of the stories
     for training whose clips get pictures, where the rest are wanted for their guides; every: whether all
-    clips of these stories get some, which makes five times as many in hardly more time, four in five of them
+    clips of these stories get some, which makes five times as many in hardly more time, five in six of them
     bad. Returns how many clips have pictures.
     Raises OSError or :class:`ranker.RankerError` for a folder that cannot be used or holds another kind of
     set.

@@ -131,3 +131,35 @@ def test_each_says_what_stands_with_what_they_do() -> None:
     board = story('anna at chair\nben at door\n(Anna waves and says "Hi", Ben says "Ho.")')
     told_as = [(line_words(line, "s"), line.shots[0].say) for line in board.lines]
     assert told_as == [("Anna waves", None), ('Anna says "Hi"', "Hi"), ('Ben says "Ho."', "Ho.")]
+
+
+@pytest.mark.parametrize(
+    ("line", "expected"),
+    [
+        ('(Anna says "Hi" and waves.)', [("talk", "Hi"), ("wave", None)]),
+        ('(Anna says "Hi", hugs Ben and says "Bye".)', [("talk", "Hi"), ("hug", None), ("talk", "Bye")]),
+        ('(Anna: "Go!" Ben: "No.")', [("talk", "Go!"), ("talk", "No.")]),
+        ('(Anna says "Go!" Ben leaves.)', [("talk", "Go!"), ("leave", None)]),
+        ('(Ben angrily: "No!")', [("talk", "No!")]),
+    ],
+)
+def test_who_says_what(line: str, expected: list[tuple[str, str | None]]) -> None:
+    board = story(f"anna at chair\nben at door\n{line}")
+    assert [(each.beats[0].action, each.shots[0].say) for each in board.lines] == expected
+
+
+def test_in_a_sentence_of_its_own_she_is_who_acted_last() -> None:
+    people = ("Rose", "Grace")
+    board = story("Rose at chair\nGrace at door\n(Rose walks to Grace. She nods.)", *people)
+    assert [each.beats[0].character for each in board.lines] == ["Rose", "Rose"]
+
+
+def test_a_name_like_a_small_word_keeps_no_sentence_from_being_shown() -> None:
+    board = story("Andy at chair\n(Andy opens the fridge and yodels at the kettle.)", "Andy")
+    assert [each.beats[0].action for each in board.lines] == ["open", "look"]
+
+
+def test_captions_have_all_words() -> None:
+    board = story("anna at chair\nben at door\n(Slowly, Ben turns around.)\n(Anna is hugged by Ben.)")
+    words = [line_words(line, "s") for line in board.lines]
+    assert words == ["Slowly, Ben turns around.", "Anna is hugged by Ben."]

@@ -7,6 +7,8 @@ from test_as_people_say_it import read, told
 
 from vdsl.emit.words import line_words
 
+SITS = [("sit", ""), ("laugh", ""), ("drink", "")]
+
 
 def shown(line: str, place: str = "apartment.kitchen") -> tuple[list[tuple[str, str, str]], list[str]]:
     """Who does what to what of each line, and the warnings that something else is shown."""
@@ -144,3 +146,33 @@ def test_the_past_is_as_good(line: str) -> None:
     board, report = read(line)
     assert board is not None, [d.label for d in report.errors]
     assert not [d for d in report.diagnostics if d.code == "VDS085"]
+
+
+@pytest.mark.parametrize(
+    ("line", "expected"),
+    [
+        ("(Anna is kissed by Ben.)", [("ben", "kiss", "anna")]),  # who does it is said last
+        ("(Ben is hugged.)", [("ben", "wait", "")]),
+        ("(Ben saw the fridge.)", [("ben", "look", "fridge")]),  # and did not saw it
+        ("(Ben left.)", [("ben", "leave", "door")]),
+        ("(Anna was crying.)", [("anna", "cry", "")]),
+        ("(Anna lay down)", [("anna", "lie-down", "")]),
+        ("(A nervous Anna walks in.)", [("anna", "enter", "middle")]),
+        ("(She's crying.)", [("anna", "cry", "")]),
+        ("(Anna's sitting on the chair.)", [("anna", "sit", "chair")]),
+        ("(anna leaves crying)", [("anna", "leave", "door")]),
+        ("(Anna speaks French.)", [("anna", "talk", "")]),
+        ("(Anna doesn't look at Ben and leaves.)", [("anna", "look", "ben"), ("anna", "leave", "door")]),
+        ("(Anna sits down, laughs and drinks.)", [("anna", a, t) for a, t in SITS]),
+        ("(Anna counts to 10.)", [("anna", "count", "")]),
+        ("(Ben jumps as the kettle whistles.)", [("ben", "jump", ""), ("ben", "look", "kettle")]),
+    ],
+)
+def test_what_people_write(line: str, expected: list[tuple[str, str, str]]) -> None:
+    assert shown(line)[0] == expected
+
+
+def test_nobody_is_brought_in_by_what_somebody_else_does() -> None:
+    for line in ("(Ben stands up and the waiter leaves.)", "(Ben sits down, and the doctor comes in.)"):
+        _, report = read(line)
+        assert "VDS065" in [d.code for d in report.errors], line

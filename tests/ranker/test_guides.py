@@ -318,7 +318,7 @@ def test_clips_without_frames_are_learnt_from_by_their_guides_alone(tmp_path: Pa
             assert found.clip(index, [0], SIZE).shape == (1, SIZE, SIZE, 3)
     with pytest.raises(ValueError, match="needs guides"):
         writer.add(None, True, None, None, None, "a", 0.0)
-    phases = (Phase(60, 0, batch=16), replace(TINY.phases[0], epochs=1, batch=6))
+    phases = (Phase(120, 0, batch=16), replace(TINY.phases[0], epochs=1, batch=6))
     train(data, tmp_path / "out", replace(TINY, phases=phases, unguided=0.0, guides=32))
     ranker = Ranker.load(tmp_path / "out" / "weights", "cpu")
     frames = np.stack([clip(rng, True, 0, 0, 0) for _ in range(4)])

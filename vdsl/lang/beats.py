@@ -181,7 +181,7 @@ class BeatReader:
                 sentences.speaks(words, self.known()) if beat.spoken else words
                 for words in (self._named_in(read.parts, n) for n in range(len(read.parts)))
             )
-            whole = len(read.parts) == 1 and first[0].span == beat.words[0].span
+            whole = len(read.parts) == 1 and not read.left_out
             beats.append(replace(beat, words=first, span=beat.span if whole else _span(first)))
             for said, part, after_thing in zip(others, read.parts[1:], of_things, strict=False):
                 done = ast.BeatNode(said, _span(said))
@@ -204,7 +204,7 @@ class BeatReader:
     def _named_in(self, parts: tuple[clauses.Part, ...], n: int) -> tuple[ast.Name, ...]:
         """The words of a part, with a name for ``he`` where that is whom the part before was about."""
         said = parts[n].words
-        if n == 0 or said[0].text not in ONE:
+        if n == 0 or parts[n].fresh or said[0].text not in ONE:
             return said
         before = [word.text for word in parts[n - 1].words[1:] if word.text in self.characters]
         may = {name for name in before if self.mentions.may(said[0].text, name)}
@@ -414,7 +414,12 @@ def _with_speech(lines: tuple[ast.StoryNode, ...], node: ast.StoryNode) -> tuple
     texts = [text for beat in node.beats for text in beat.spoken]
     if not texts:
         return lines
-    begin = [min(word.span.start for word in line.beats[0].words) for line in lines]
+    seen: set[int] = set()
+    begin: list[int] = []
+    for line in lines:  # who acts in several of them is named in the first
+        starts = {word.span.start for beat in line.beats for word in beat.words}
+        begin.append(min(starts - seen or starts, default=0))
+        seen |= starts
     said: dict[int, list[ast.Text]] = {}
     for text in texts:
         at = max((n for n, start in enumerate(begin) if start <= text.span.start), default=0)
@@ -438,8 +443,10 @@ def _saying(line: ast.StoryNode, texts: list[ast.Text]) -> ast.StoryNode:
 
 def _span(said: tuple[ast.Name, ...]) -> Span:
     """Where the words of a part stand, but for what was put behind them from elsewhere."""
+    first, before = said[0], said[1:2] if said[1:2] != () and said[1].span.start < said[0].span.start else ()
+    said = (first, *said[1 + len(before) :])
     count = next((k for k in range(1, len(said)) if said[k].span.start < said[k - 1].span.start), len(said))
-    return said[0].span.to(said[count - 1].span)
+    return (before or (first,))[0].span.to(said[count - 1].span)  # `slowly, ben turns`
 
 
 def _filmed_alike(node: ast.StoryNode, beat: ast.BeatNode) -> ast.StoryNode:

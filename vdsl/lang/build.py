@@ -262,11 +262,14 @@ class Builder:
         """The words of a beat, with a full stop or a comma for any mark."""
         words: list[ast.Name] = []
         spoken: list[ast.Text] = []
-        for token in map(_token, node.children):
+        tokens = [_token(child) for child in node.children]
+        for k, token in enumerate(tokens):
             if token.type == "TEXT":
                 spoken.append(self.text(token))
+                if _ends_sentence(tokens[k:]):
+                    words.append(ast.Name((".",), self.span(token)))
             elif token.type == "MARK":
-                ends = any(mark in token for mark in ".!?;")
+                ends = any(mark in token for mark in ".!?;:")
                 words.append(ast.Name(("." if ends else ",",), self.span(token)))
             else:
                 words.append(self.name(token))
@@ -370,3 +373,13 @@ _VALUES: dict[str, Callable[[Builder, Any, int], ast.Value]] = {
 }
 
 __all__ = ["DEEPEST_VALUE", "UNITS", "Builder", "TooDeepError", "nearest"]
+
+
+def _ends_sentence(tokens: list[Token]) -> bool:
+    """Whether a text that ends a sentence is followed by another: a name in capitals, or one and a colon."""
+    after = [token for token in tokens[1:] if token.type not in ("COMMA", "MARK")]
+    if not after or str(tokens[0]).rstrip('"')[-1:] not in (".", "!", "?", "…"):
+        return False
+    at = tokens.index(after[0], 1)
+    speaks = len(tokens) > at + 1 and ":" in tokens[at + 1]
+    return str(after[0]).istitle() or speaks

@@ -50,10 +50,12 @@ _MOST_ACTION_WORDS = 3
 
 @dataclass(frozen=True)
 class Part:
-    """Who does what. meanwhile: at the same time as the part before, else after it"""
+    """Who does what. meanwhile: at the same time as the part before, else after it; fresh: in a sentence of
+    its own"""
 
     words: Words
     meanwhile: bool = False
+    fresh: bool = False
 
 
 @dataclass(frozen=True)
@@ -105,7 +107,12 @@ def _goes_on(rest: Words, k: int, known: Known, third: bool) -> int | None:
     at = k + 1 + (at if found is None else found)
     if any(known.is_action(rest[: at + size]) for size in (1, 2) if at + size <= len(rest)):
         return None  # `trips and falls` is one action
-    object_before = k > 1 and rest[k - 1].text not in phrases.PARTICLES and not says_how(rest[k - 1])
+    object_before = (
+        k > 1
+        and rest[k - 2].text not in ("and", COMMA)
+        and rest[k - 1].text not in phrases.PARTICLES
+        and not says_how(rest[k - 1])
+    )
     several = is_third(rest[k - 1])  # `the hats and boxes`
     if (
         object_before
@@ -146,7 +153,7 @@ def _subjects(said: Words, known: Known) -> tuple[str, ...]:
 def _is_prose(said: Words, known: Known) -> bool:
     """Whether the first verb is in the third person."""
     verb = next((word for word in _does(said, subject(said, known)) if not says_how(word)), None)
-    return verb is not None and is_third(verb)
+    return verb is not None and (is_third(verb) or is_not(verb.text))
 
 
 def _does(said: Words, who: int) -> Words:
@@ -157,7 +164,7 @@ def _does(said: Words, who: int) -> Words:
     return said[comma + 1 :]
 
 
-def _is_ing(word: ast.Name, known: Known) -> bool:
+def is_ing(word: ast.Name, known: Known) -> bool:
     """Whether a word is a participle of a known verb: ``smiling``, and not ``ring``."""
     forms = plain_forms(word.text) if word.text.endswith("ing") else ()
     return any(len(form) > 2 and known.is_action((ast.Name((form,), word.span),)) for form in forms)
@@ -171,7 +178,7 @@ def begins(after: Words, known: Known, third: bool | None = None) -> int | None:
         at += 1
     if not after or after[at].text in ARTICLES or known.is_name(after[at]):
         return None
-    if third is not None and third != is_third(after[at]) and not _is_ing(after[at], known):
+    if third is not None and third != is_third(after[at]) and not is_ing(after[at], known):
         return None
     rest = (after[at], *(word for word in after[at + 1 :] if word.text not in ARTICLES))
     if {rest[0].text, *plain_forms(rest[0].text)} & {*AUXILIARIES}:
@@ -234,7 +241,7 @@ def _begun(said: Words, known: Known) -> Sentence | None:
             return Sentence((one, *while_, *others), left)
     if first.text in (*CLAUSES, "after", "before", "once"):
         return replace(of_main, left_out=(said[:comma], *of_main.left_out))
-    if first.text in PREPOSITIONS or _is_ing(first, known):  # `on the sofa, ben sleeps`; `smiling, anna nods`
+    if first.text in PREPOSITIONS or is_ing(first, known):  # `on the sofa, ben sleeps`; `smiling, anna nods`
         joint = () if first.text in PREPOSITIONS else (ast.Name(("and",), said[comma].span),)
         one, *others = of_main.parts
         return replace(of_main, parts=(Part((*one.words, *joint, *said[:comma])), *others))
@@ -335,7 +342,11 @@ def _after_comma(before: Words, after: Words, known: Known, third: bool) -> tupl
         len(before) == 1 or before[-2].text in (*_MEANWHILE, "then")
     )
     does = after[1:] if after[0].text == "then" else after
-    other = bool(_somebody_acts(does, known)) or (subjects and bool(subject(does, known)))
+    other = (
+        bool(_somebody_acts(does, known))
+        or _is_stranger(does, known)
+        or (subjects and bool(subject(does, known)))
+    )
     verb = third and phrases.looks_like_a_verb(does, known.is_thing)
     acts = verb or (bool(does) and begins(does, known, third) is not None)
     if before[-1].text == "and" or (subjects and not other):
@@ -358,7 +369,7 @@ def _is_done_besides(before: Words, after: Words, known: Known) -> bool:
     who = subject(before, known)
     if any(is_not(each.text) for each in before[who : who + 3]):
         return False  # `is not sitting`
-    if len(before) < who + 2 or not _is_ing(word, known) or known.is_name(word):
+    if len(before) < who + 2 or not is_ing(word, known) or known.is_name(word):
         return False
     aux = {last, *plain_forms(last)} & {*AUXILIARIES, "go", "come", "stop"}
     belongs = (*ARTICLES, *PREPOSITIONS, *CLAUSES, "and", COMMA)  # `the blinking light`
@@ -391,7 +402,8 @@ def _parts(said: Words, known: Known) -> tuple[tuple[Part, ...], tuple[Words, ..
             k += 1
             continue
         does = after[1:] if after[:1] != () and after[0].text == "then" else after
-        if word.text in LATER and thing(does, known, True) is not None:  # `and the door opens`
+        links = word.text in (*_MEANWHILE, *LATER, "when")
+        if links and (_is_stranger(does, known) or thing(does, known, True) is not None):
             others, more = _parts(does, known)
             return (Part(said[:k]), *others), (*left, *more)
         if word.text in (*_MEANWHILE, *LATER) and _somebody_acts(does, known):
@@ -403,10 +415,10 @@ def _parts(said: Words, known: Known) -> tuple[tuple[Part, ...], tuple[Words, ..
                 others, more = _parts(does, known)
                 first = replace(others[0], meanwhile=meanwhile)
                 return (Part(said[:k]), first, *others[1:]), (*left, *more)
-        if word.text == "before" and after and _is_ing(after[0], known):
+        if word.text == "before" and after and is_ing(after[0], known):
             said = (*said[:k], ast.Name(("and",), word.span), *after)
             continue
-        after_ing = word.text == "after" and bool(after) and _is_ing(after[0], known)
+        after_ing = word.text == "after" and bool(after) and is_ing(after[0], known)
         thought = word.text == "that" and bool(subject(after, known))  # `the letter that she wrote`
         purpose = word.text == "to" and _is_purpose(said, k, known)
         if word.text in CLAUSES or after_ing or thought or purpose or _is_let(said, k, known, third):
@@ -416,6 +428,12 @@ def _parts(said: Words, known: Known) -> tuple[tuple[Part, ...], tuple[Words, ..
             continue
         k += 1
     return (Part(said),), tuple(left)
+
+
+def _is_stranger(does: Words, known: Known) -> bool:
+    """Whether somebody acts who is not of the story: ``the waiter leaves``."""
+    third = len(does) > 2 and (is_third(does[2]) or is_third(does[-1]))
+    return third and does[0].text in ARTICLES and known.is_person(does[1].text)
 
 
 def _clause_end(said: Words, begin: int, known: Known, third: bool) -> int:
@@ -455,7 +473,7 @@ def _is_let(said: Words, at: int, known: Known, third: bool) -> bool:
     joined = said[at - 1].text in (*LATER, COMMA)
     if at < subject(said, known) + 2 or not _is_of_another(said[:at], known) or not third or joined:
         return False
-    if _is_ing(word, known):
+    if is_ing(word, known):
         return begins(said[at:], known) == 0
     whom = said[at - 1].text in (*known.named, "him", "them")
     if not whom or is_third(word) or word.text in PREPOSITIONS or says_how(word):

@@ -150,6 +150,19 @@ def is_slip(word: str, name: str) -> bool:
     return a[1:] == b[1:] or a == b[1:] or a[1:] == b or swapped
 
 
+def is_mixed_up(word: str, name: str, missing: bool = True) -> bool:
+    """Whether a word is a name but that a letter is twice there, or two changed places, or one is missing: of
+    short names other words are a letter more or other (``bend``, ``room`` and ``broom``)."""
+    word, name = word.casefold(), name.casefold()
+    if word == name or len(word) < 3 or name == f"{word}s" or not is_slip(word, name):
+        return False
+    twice = any(
+        word[:k] + word[k + 1 :] == name and (word[k] == word[k - 1] or word[k].isdigit())
+        for k in range(1, len(word))
+    )
+    return (missing and len(word) < len(name)) or twice or sorted(word) == sorted(name)
+
+
 @lru_cache(maxsize=1024)
 def _nearest(word: str, candidates: tuple[str, ...]) -> str | None:
     folded = {_fold(c): c for c in candidates}

@@ -50,22 +50,24 @@ VERBS = frozenset(
     want warm warn wash waste wave weave weep weigh welcome wheel whine whip whirl whisk whistle win
     wind wipe wish wobble wonder work worry worsen worship wrap wreck wrestle wriggle yell yodel zip
     zoom
-    """.split()  # noqa: SIM905 (a list of nine hundred quoted words reads worse)
+    """.split()  # noqa: SIM905 (a list of hundreds of quoted words reads worse)
 )
 
-#: Irregular pasts, but for those that are something else as well (``left``, ``saw``, ``felt``, ``ground``).
+#: Irregular pasts, but for those that are something else as well (``saw``, ``rose``, ``ground``).
 PAST = {
     "ate": "eat", "began": "begin", "bent": "bend", "blew": "blow", "broke": "break", "brought":
     "bring", "came": "come", "caught": "catch", "chose": "choose", "crept": "creep", "drank": "drink",
-    "drew": "draw", "drove": "drive", "dug": "dig", "fed": "feed", "fell": "fall", "fled": "flee",
-    "flew": "fly", "fought": "fight", "froze": "freeze", "gave": "give", "got": "get", "hid": "hide",
-    "held": "hold", "hung": "hang", "kept": "keep", "knelt": "kneel", "leapt": "leap", "lit": "light",
-    "lost": "lose", "made": "make", "paid": "pay", "ran": "run", "rang": "ring", "said": "say", "sang":
-    "sing", "sank": "sink", "sat": "sit", "shook": "shake", "showed": "show", "slept": "sleep", "slid":
-    "slide", "spat": "spit", "spoke": "speak", "spun": "spin", "stood": "stand", "stole": "steal",
-    "struck": "strike", "swam": "swim", "swept": "sweep", "swung": "swing", "taught": "teach", "threw":
-    "throw", "told": "tell", "took": "take", "tore": "tear", "went": "go", "wept": "weep", "woke":
-    "wake", "wore": "wear", "wrote": "write",
+    "drew": "draw", "drove": "drive", "dug": "dig", "fed": "feed", "fell": "fall", "felt": "feel",
+    "fled": "flee", "flew": "fly", "fought": "fight", "found": "find", "froze": "freeze", "gave":
+    "give", "got": "get", "heard": "hear", "held": "hold", "hid": "hide", "hung": "hang", "kept":
+    "keep", "knelt": "kneel", "lay": "lie", "leapt": "leap", "left": "leave", "lit": "light", "lost":
+    "lose", "made": "make", "met": "meet", "paid": "pay", "ran": "run", "rang": "ring", "said": "say",
+    "sang":     "sing", "sank": "sink", "sat": "sit", "sent": "send", "shook": "shake", "showed":
+    "show", "slept": "sleep", "slid":     "slide", "spat": "spit", "spoke": "speak", "spun": "spin",
+    "stole": "steal", "stood": "stand", "struck": "strike", "swam": "swim", "swept": "sweep", "swung":
+    "swing", "taught": "teach", "thought": "think", "threw":     "throw", "told": "tell", "took":
+    "take", "tore": "tear", "went": "go", "wept": "weep", "woke":     "wake", "wore": "wear", "wrote":
+    "write",
 }  # fmt: skip
 
 #: What is not done does not show.
@@ -75,6 +77,15 @@ MODALS = (
     "can", "cannot", "could", "will", "would", "should", "shall", "may", "might", "must", "did", "do", "does",
     "has", "had", "have", "is", "are", "was", "were",
 )  # fmt: skip
+
+
+def is_past(word: str) -> bool:
+    """Whether a word is a past, or a participle: ``kissed``, ``stolen``."""
+    return (
+        word.endswith("ed")
+        or word in PAST
+        or word in ("bitten", "beaten", "given", "stolen", "taken", "thrown")
+    )
 
 
 def is_not(word: str) -> bool:

@@ -12,9 +12,10 @@ from itertools import pairwise
 from typing import TYPE_CHECKING
 
 from . import ast, clauses, nearly, phrases
-from .diagnostics import Diagnostic
+from .diagnostics import Diagnostic, is_mixed_up
+from .english import MODALS, VERBS
 from .ir import Beat
-from .pronouns import ONE
+from .pronouns import BOTH, ONE
 from .things import Thing, thing
 from .words import ARTICLES
 
@@ -24,6 +25,9 @@ if TYPE_CHECKING:
 #: Warnings of things that are in the scene from now on, though they were put there for nothing.
 STAYS = ("VDS083", "VDS084")
 #: What one may say to somebody who is not named.
+_COMMON = {*ARTICLES, *MODALS, *VERBS, *BOTH, *ONE, "and", "been", "not"}
+#: After them a word in capitals is a name, and no month or film.
+_TO_SOMEBODY = ("at", "to", "with", "from", "for", "behind", "beside")
 _NO_NAMES = ("everything", "goodbye", "hello", "nothing", "something", "sorry", "thanks", "words")
 
 
@@ -46,8 +50,10 @@ class Fallback:
             who = clauses.owner(word.text) or (word.text if owned else "")
             known = reader.targets.is_name(word) or reader.targets.is_thing(word)
             unknown = bool(who) and who not in (*reader.characters, *ONE) and not known
-            like = any(nearly.is_mixed_up(word.text, name) for name in reader.characters)
-            name = bool(k) and not titles and word.span.text.istitle()
+            known = known or word.text in _COMMON or phrases.is_small(word.text)
+            like = any(is_mixed_up(word.text, name) for name in reader.characters)
+            to_somebody = k > 0 and node.words[k - 1].text in _TO_SOMEBODY
+            name = to_somebody and not titles and word.span.text.istitle()
             if unknown or len(word.parts) > 1 or (not known and (like or name)):
                 return True
         return not nearly.is_told(node.words, (node.who or node.span).text)
@@ -94,6 +100,7 @@ class Fallback:
         after = tuple(rest[used:])
         definition = reader.catalog.get("action", action) if action else None
         by_itself = getattr(definition, "target", "required") != "required"
+        by_itself = by_itself or bool(getattr(definition, "otherwise", ()))  # `leaves crying`
         whose = phrases.BODY & {word.text for word in after}  # `bites her lip` is not to bite something
         alone = by_itself and not (whose and getattr(definition, "needs", "none") != "none")
         return nearly.readings(who, tuple(rest[:used]), after, self._named_among(after, who.text), alone)
@@ -139,8 +146,10 @@ class Fallback:
         reader, word = self.reader, found.named[-1] if found.named else None
         if word is None or reader.targets.is_thing(word):
             return False
-        known = (*(reader.scope.known() if reader.scope is not None else ()), *sorted(reader.things))
-        meant = next((name for name in known if nearly.is_mixed_up(word.text, name)), None)
+        here = reader.scope.known() if reader.scope is not None else ()
+        meant = next((name for name in here if is_mixed_up(word.text, name)), None)
+        alike = (name for name in sorted(reader.things) if is_mixed_up(word.text, name, missing=False))
+        meant = meant or next(alike, None)
         if meant is not None:
             label = f"nothing is called `{word.text}` here"
             self.report.error("VDS060", word.span, label=label, suggestion=meant, fix=meant)

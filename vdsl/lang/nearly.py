@@ -11,7 +11,7 @@ from collections.abc import Collection, Iterator, Sequence
 from itertools import pairwise
 
 from . import ast
-from .diagnostics import Diagnostic, is_slip
+from .diagnostics import Diagnostic, is_mixed_up, is_slip
 from .english import MODALS, PAST, VERBS, is_not
 from .phrases import Words, is_small
 from .pronouns import ALL, BOTH, ONE
@@ -24,7 +24,6 @@ _FORGIVEN = {"VDS060", "VDS061", "VDS065", "VDS071", "VDS072", "VDS073", "VDS074
 _OWN = ("her", "his", "their")
 #: What is named after them has nothing done to it.
 _NOT_TO = ("from", "of", "without")
-_SHORTEST = 3  # letters of a word that may be a name
 
 
 def is_told(words: Words, said: str) -> bool:
@@ -61,17 +60,11 @@ def _is_slip(wrong: Diagnostic, actions: Collection[str], things: Collection[str
     word = fold(wrong.span.text)
     if wrong.code == "VDS071":
         return is_mistyped(wrong.span.text, actions)
-    if (
-        word in things
-        or word in VERBS
-        or word in (*ONE, *BOTH)
-        or is_small(word)
-        or wrong.code != "VDS060"
-        or len(word) < _SHORTEST
-    ):
+    common = word in things or word in VERBS or word in (*ONE, *BOTH) or is_small(word)
+    if common or wrong.code != "VDS060":
         return False
-    near = wrong.suggestion is not None and is_slip(word, fold(wrong.suggestion)) and len(word) > _SHORTEST
-    return near or any(is_mixed_up(word, name) for name in things)
+    near = wrong.suggestion is not None and is_mixed_up(word, fold(wrong.suggestion))
+    return near or any(is_mixed_up(word, name, missing=False) for name in things)
 
 
 def is_mistyped(verb: str, actions: Collection[str]) -> bool:
@@ -79,18 +72,10 @@ def is_mistyped(verb: str, actions: Collection[str]) -> bool:
     word = fold(verb)
     if {word, *plain_forms(word)} & VERBS or verb in MODALS or is_not(verb):
         return False
-    forms = {form for name in actions for form in (name, f"{name}s", f"{name}es")}
+    ends = ("s", "es", "ed", "d", "ing")
+    forms = {f"{name}{end}" for name in actions for end in ("", *ends)}
+    forms |= {f"{name[:-1]}ing" for name in actions if name.endswith("e")}
     return any(is_slip(word, form) for form in forms)
-
-
-def is_mixed_up(word: str, name: str) -> bool:
-    """Whether a word is a name but that a letter is missing or twice there, or two changed places: of short
-    names other words are a letter more or other (``bend``)."""
-    word, name = word.casefold(), name.casefold()
-    if word == name or len(word) < _SHORTEST or not is_slip(word, name):
-        return False
-    twice = any(word[:k] + word[k + 1 :] == name and word[k] == word[k - 1] for k in range(1, len(word)))
-    return len(word) < len(name) or twice or sorted(word) == sorted(name)
 
 
 def readings(

@@ -11,12 +11,16 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 from . import ast
-from .english import MODALS
+from .english import MODALS, is_past
 from .pronouns import ALL, BOTH, ONE, Mentions
 from .words import ARTICLES, PREPOSITIONS, WHERE, plain_forms
 
 #: Before a verb, by itself or with ``to``, they say that it begins or goes on.
-AUXILIARIES = ("is", "are", "start", "begin", "try", "continue", "keep", "proceed", "pretend")
+AUXILIARIES = (
+    "is", "are", "was", "were", "been", "has", "had", "will", "would", "can", "could", "must", "may", "might",
+    "should", "start", "begin", "try", "continue", "keep", "proceed", "pretend",
+)  # fmt: skip
+_BE = ("is", "are", "was", "were", "been")
 #: With ``to`` before another verb they say no more than that who acts is about to.
 _TOWARDS = (
     "come", "decide", "go", "hurry", "lean", "manage", "reach", "rush", "stop", "turn", "walk", "bend", "run",
@@ -438,6 +442,10 @@ def _without_auxiliary(rest: Words, is_action: Callable[[Words], bool]) -> Words
     if not rest or not {rest[0].text, *plain_forms(rest[0].text)} & {*AUXILIARIES}:
         return rest
     after = rest[2:] if len(rest) > 2 and rest[1].text == "to" else rest[1:]
+    if rest[0].text in _BE and is_past(after[0].text if after else ""):
+        return rest  # `is kissed` is nothing one does
+    if after and after[0].text in AUXILIARIES:
+        return _without_auxiliary(after, is_action)  # `has been waiting`
     begins_one = any(is_action(after[:size]) for size in range(1, min(4, len(after)) + 1))
     return after if begins_one else rest
 

@@ -9,13 +9,32 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import replace
 
+from runtime.motion.manner import MANNERS
+
 from . import ast
-from .clauses import CLAUSES, COMMA, LATER, Part, Sentence, begins, one_sentence, owned, subject
+from .clauses import (
+    CLAUSES,
+    COMMA,
+    LATER,
+    Part,
+    Sentence,
+    begins,
+    is_ing,
+    one_sentence,
+    owned,
+    owner,
+    subject,
+)
+from .english import is_past
 from .phrases import Known, Words, says_how
 from .things import thing
-from .words import PREPOSITIONS
+from .words import ARTICLES, PREPOSITIONS, fold
 
 STOP = "."
+#: Who does it, of one word with what they are: `she's crying`.
+_IS = {"she's": "she", "he's": "he", "they're": "they"}
+_BE = ("is", "are", "was", "were", "gets", "got")
+_OBJECTS = ("him", "her", "them", "it")
 _COUNTED = ("second", "minute", "hour", "time", "step", "metre", "meter")
 _SEVERAL = {
     ("both", "of", "them"): "both",
@@ -32,7 +51,7 @@ def sentence(said: Words, known: Known) -> Sentence:
     who: Words = ()
     *before, last = _until_stops(said)
     for each in (*before, last):
-        words = owned(_several(_uncounted(each)), known)
+        words = owned(_plainly(_several(_uncounted(each)), known), known)
         if not parts and each is not last and not _is_about(words, known):
             left.append(words)  # `Footsteps; anna ducks`
             continue
@@ -42,19 +61,24 @@ def sentence(said: Words, known: Known) -> Sentence:
                 continue
             words = (*who, *words)  # `She stops. Turns.`
         one = one_sentence(words, known)
-        parts += [replace(one.parts[0], meanwhile=False), *one.parts[1:]] if parts else one.parts
+        parts += [replace(one.parts[0], meanwhile=False, fresh=True), *one.parts[1:]] if parts else one.parts
         left += one.left_out
         who = words[: subject(words, known)] or who
     return Sentence(tuple(parts), tuple(left))
 
 
 def speaks(said: Words, known: Known) -> Words:
-    """Words with ``talk`` where they say only who says something, and to whom: ``anna to ben``."""
-    said = said[: len(said) - 1] if len(said) > 1 and said[-1].text == COMMA else said
+    """Words with ``talk`` where they say only who says something, how, and to whom: ``anna to ben``."""
+    said = tuple(word for word in said if word.text != COMMA) if len(said) < 4 else said
     count = subject(said, known)
-    if not count or (len(said) > count and said[count].text not in PREPOSITIONS):
+    after = next((k for k in range(count, len(said)) if not _is_how(said[k])), len(said))
+    if not count or (after < len(said) and said[after].text not in PREPOSITIONS):
         return said
     return (*said[:count], ast.Name(("talk",), said[count - 1].span), *said[count:])
+
+
+def _is_how(word: ast.Name) -> bool:
+    return says_how(word) or fold(word.text) in MANNERS
 
 
 def _until_stops(said: Words) -> Iterator[Words]:
@@ -81,6 +105,31 @@ def _uncounted(said: Words) -> Words:
             continue
         out.append(word)
     return tuple(out)
+
+
+def _plainly(said: Words, known: Known) -> Words:
+    """``she cries`` for ``she's crying``, ``anna`` for ``a nervous anna``, who does it first where it is done
+    by somebody: ``ben kissed anna`` for ``anna is kissed by ben``; and ``sees`` for ``saw the letter``."""
+    if not said:
+        return said
+    first, after = said[0], said[1:]
+    who = _IS.get(first.text) or owner(first.text)
+    does = bool(after) and (after[0].text in PREPOSITIONS or is_ing(after[0], known))
+    if first.text in _IS or (who in known.named and does):
+        said = (ast.Name((who,), first.span), ast.Name(("is",), first.span), *after)
+    at = next((k for k in range(1, min(4, len(said))) if said[k].text in known.named), 0)
+    if at and first.text in ARTICLES and (at > 1 or said[at].span.text.istitle()):
+        said = said[at:]  # `the old carl`
+    count = subject(said, known)
+    if count and said[count : count + 2] != () and len(said) > count + 1:
+        verb, whom = said[count], said[count + 1]
+        somebody = whom.text in (*ARTICLES, *known.named, *_OBJECTS)
+        if verb.text == "saw" and somebody:
+            return (*said[:count], ast.Name(("sees",), verb.span), *said[count + 1 :])
+        by = next((k for k in range(count, len(said) - 1) if said[k].text == "by"), 0)
+        if verb.text in _BE and is_past(whom.text) and by and said[by + 1].text in known.named:
+            return (said[by + 1], whom, *said[:count], *said[count + 2 : by], *said[by + 2 :])
+    return said
 
 
 def _several(said: Words) -> Words:

@@ -248,6 +248,7 @@ class TargetReader:
             and self.who is not None
             and all(self._is_nowhere([name]) and len(name.parts) == 1 for name in group)
             and group[-1].text not in phrases.BODY
+            and not pronouns.is_person(group[-1].text)
             and not any(is_slip(group[-1].text, name) for name in known)
         )
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from .diagnostics import is_slip
+from .diagnostics import is_mixed_up
 from .english import MODALS, PAST, VERBS, is_not
 from .phrases import Known, Words, is_third, of_several, says_how
 from .words import ARTICLES, PREPOSITIONS, plain_forms
@@ -60,12 +60,13 @@ def thing(words: Words, known: Known, acting: bool = False) -> Thing | None:
         return None
     end = verb or (len(noun) if article else 0)  # `a loud bang from outside`
     group = noun[: next((k for k in range(1, end) if noun[k].text in PREPOSITIONS), end)]
-    if not group or (not article and any(word.text in known.named for word in group)):
+    somebody = any(word.text in known.named for word in group)
+    if not group or (somebody and (not article or len(group) > 1)):
         return None
     last = group[-1]
     is_one = known.is_name(last) or any(map(known.is_thing, (last, *of_several(last))))
     person = any(map(known.is_person, (word.text for word in group)))
-    slip = any(is_slip(word.text, name) for word in group for name in known.named)
+    slip = any(is_mixed_up(word.text, name) for word in group for name in known.named)
     if (slip and not is_one) or not (is_one or (article and not person)):
         return None
     return Thing(group, owner)

@@ -163,3 +163,5 @@ def test_captions_have_all_words() -> None:
     board = story("anna at chair\nben at door\n(Slowly, Ben turns around.)\n(Anna is hugged by Ben.)")
     words = [line_words(line, "s") for line in board.lines]
     assert words == ["Slowly, Ben turns around.", "Anna is hugged by Ben."]
+    board = story('anna at chair\nben at door\n(Ben says "What?" and Anna laughs)')
+    assert [line_words(line, "s") for line in board.lines] == ['Ben says "What?" + Anna laughs']

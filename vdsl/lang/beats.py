@@ -434,11 +434,13 @@ def _saying(line: ast.StoryNode, texts: list[ast.Text]) -> ast.StoryNode:
     span = texts[0].span
     whole = ast.Text(" ".join(text.value for text in (*texts, *later)), span)
     others = tuple(each for each in line.options if each is not option)
-    *beats, last = line.beats
-    if last.span.end < texts[-1].span.end:
-        last = replace(last, span=last.span.to(texts[-1].span))
+    beats = list(line.beats)
+    for text in texts:  # the words of whoever says it go on as far
+        at = max((k for k, b in enumerate(beats) if b.span.start <= text.span.start), default=len(beats) - 1)
+        if beats[at].span.end < text.span.end:
+            beats[at] = replace(beats[at], span=beats[at].span.to(text.span))
     say = ast.Option(ast.Name(("say",), span), (whole,), span)
-    return replace(line, beats=(*beats, last), options=(*others, say))
+    return replace(line, beats=tuple(beats), options=(*others, say))
 
 
 def _span(said: tuple[ast.Name, ...]) -> Span:

@@ -41,15 +41,15 @@ VERBS = frozenset(
     shatter shave shed shelter shift shine shiver shock shoot shop show shrink shut sign sink sip skate
     sketch skid skip slam slap slice slide slip slow smash smell smoke snap snatch sneer snow soak solve
     soothe sort sound sow spare spark sparkle speed spell spend spill spin splash split spoil spray
-    spread spring sprout squash squeak squeal squeeze squint stain stamp star start starve stay steal
-    steam steer step stick sting stitch stop store strap strip stroke struggle stuff stumble subtract
-    succeed suck suffer suggest suit supply support suppose surprise surround suspect swallow swap sway
-    swear sweat swell swim swing switch tame tap taste tear tease telephone tempt test thaw think thump
-    tick tickle tie tighten time tip tire tour tow trace trade train trap travel treat trip trot trouble
-    trust try tuck tug tumble twist twitch type unpack untie use vanish vibrate visit wail walk wander
-    want warm warn wash waste wave weave weep weigh welcome wheel whine whip whirl whisk whistle win
-    wind wipe wish wobble wonder work worry worsen worship wrap wreck wrestle wriggle yell yodel zip
-    zoom
+    spread spring sprout squash squeak squeal squeeze squint stack stain stamp star start starve stay
+    steal steam steer step stick sting stitch stop store strap strip stroke struggle stuff stumble
+    subtract succeed suck suffer suggest suit supply support suppose surprise surround suspect swallow
+    swap sway swear sweat swell swim swing switch tame tap taste tear tease telephone tempt test thaw
+    think thump tick tickle tie tighten time tip tire tour tow trace trade train trap travel treat trip
+    trot trouble trust try tuck tug tumble twist twitch type unpack untie use vanish vibrate visit wail
+    walk wander want warm warn wash waste wave weave weep weigh welcome wheel whine whip whirl whisk
+    whistle win wind wipe wish wobble wonder work worry worsen worship wrap wreck wrestle wriggle yell
+    yodel zip zoom
     """.split()  # noqa: SIM905 (a list of hundreds of quoted words reads worse)
 )
 

@@ -16,6 +16,7 @@ from .english import MODALS, PAST, VERBS, is_not
 from .phrases import Words, is_small
 from .pronouns import ALL, BOTH, ONE
 from .source import Span
+from .stand_in import NO_THINGS
 from .words import ARTICLES, PREPOSITIONS, fold, plain_forms
 
 #: What is wrong with a sentence that is shown all the same: nothing, nobody or no action is called so, it
@@ -60,7 +61,7 @@ def _is_slip(wrong: Diagnostic, actions: Collection[str], things: Collection[str
     word = fold(wrong.span.text)
     if wrong.code == "VDS071":
         return is_mistyped(wrong.span.text, actions)
-    common = word in things or word in VERBS or word in (*ONE, *BOTH) or is_small(word)
+    common = word in things or word in VERBS or word in NO_THINGS or word in (*ONE, *BOTH) or is_small(word)
     if common or wrong.code != "VDS060":
         return False
     near = wrong.suggestion is not None and is_mixed_up(word, fold(wrong.suggestion))

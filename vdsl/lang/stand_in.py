@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 #: The prop that stands in for what is none.
 STAND_IN = "stand_in"
 #: Nouns after which no box would be understood.
-_NO_THINGS = {
+NO_THINGS = {
     "air", "answer", "attention", "back", "beach", "bit", "boat", "bottom", "breath", "bush", "bushes",
     "car", "care", "castle", "cloud", "corner", "courage", "crack", "crowd", "dark", "day", "decision",
     "dirt", "drain", "dream", "drop", "dust", "edge", "end", "engine", "evening", "everything", "face",
@@ -46,7 +46,7 @@ def stand_in(
     None where a word is nearly a prop's name, or none for a thing.
     """
     slip = any(is_slip(word, name) for name in (*catalog.names("prop"), *catalog.synonyms("prop")))
-    if scene.scope is None or slip or word in _NO_THINGS or catalog.get("prop", STAND_IN) is None:
+    if scene.scope is None or slip or word in NO_THINGS or catalog.get("prop", STAND_IN) is None:
         return None
     report.warn(
         "VDS084",

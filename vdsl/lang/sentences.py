@@ -109,7 +109,7 @@ def _uncounted(said: Words) -> Words:
 
 def _plainly(said: Words, known: Known) -> Words:
     """``she cries`` for ``she's crying``, ``anna`` for ``a nervous anna``, who does it first where it is done
-    by somebody: ``ben kissed anna`` for ``anna is kissed by ben``; and ``sees`` for ``saw the letter``."""
+    by somebody: ``ben kissed anna`` for ``anna is kissed by ben``; and the pasts that are other verbs too."""
     if not said:
         return said
     first, after = said[0], said[1:]
@@ -126,6 +126,9 @@ def _plainly(said: Words, known: Known) -> Words:
         somebody = whom.text in (*ARTICLES, *known.named, *_OBJECTS)
         if verb.text == "saw" and somebody:
             return (*said[:count], ast.Name(("sees",), verb.span), *said[count + 1 :])
+        after = said[count + 2 :]
+        if verb.text == "lay" and whom.text == "down" and (not after or after[0].text in PREPOSITIONS):
+            return (*said[:count], ast.Name(("lies",), verb.span), *said[count + 1 :])
         by = next((k for k in range(count, len(said) - 1) if said[k].text == "by"), 0)
         if verb.text in _BE and is_past(whom.text) and by and said[by + 1].text in known.named:
             return (said[by + 1], whom, *said[:count], *said[count + 2 : by], *said[by + 2 :])

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from ..lang.clauses import OWNERS, owner
 from ..lang.ir import Beat, Shot, StoryLine
-from ..lang.pronouns import ALL, BOTH, ONE
+from ..lang.pronouns import ALL, BOTH, ONE, OWNERS, owner
 
 if TYPE_CHECKING:
     from .types import BuiltShot

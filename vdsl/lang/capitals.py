@@ -10,7 +10,7 @@ from collections.abc import Callable, Collection, Iterable, Iterator
 from dataclasses import replace
 
 from . import ast
-from .clauses import owner
+from .pronouns import owner
 from .words import ARTICLES
 
 

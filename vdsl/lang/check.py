@@ -15,7 +15,6 @@ from .beats import BeatReader
 from .bringing import bring, bring_named, put_about
 from .capitals import Named
 from .catalog import CatalogLike
-from .clauses import owner
 from .diagnostics import Report
 from .files import used_scripts
 from .hands import Hands
@@ -24,7 +23,7 @@ from .ir import Beat, Character, Scene, Storyboard, StoryLine, Target
 from .lookup import Lookup, Setting
 from .phrases import is_small
 from .placement import SceneBeingRead, appear, place, someone_or_something
-from .pronouns import Mentions
+from .pronouns import Mentions, owner
 from .scope import Scope
 from .settings import Settings, read_header
 from .shots import DEFAULT_PROPOSALS, DEFAULT_STYLE, DEFAULT_TAKES, Defaults, LineContext, read_shots

@@ -14,7 +14,7 @@ from . import ast, phrases
 from .diagnostics import is_slip
 from .english import is_not
 from .phrases import AUXILIARIES, BODY, Known, Words, is_third, says_how
-from .pronouns import ALL, BOTH, ONE
+from .pronouns import ALL, BOTH, ONE, OWNERS, owner
 from .things import thing
 from .words import ARTICLES, PREPOSITIONS, fold, plain_forms
 
@@ -25,8 +25,6 @@ CLAUSES = (
 )  # fmt: skip
 #: What somebody else does is at the same time, or later.
 _MEANWHILE, LATER = ("while", "as", "and"), ("and", "then")
-#: Whose something is, before it, and who that is.
-OWNERS = {"his": "he", "her": "she"}
 #: What a part of a body does is what its owner does: `her hands tremble`.
 _OF_A_BODY = ("tremble", "shake", "shiver", "quiver", "twitch")
 #: Somebody does them to what somebody else is doing.
@@ -74,11 +72,6 @@ def one_sentence(said: Words, known: Known) -> Sentence:
     said, left = _with_and(said, known)
     parts, clauses = _parts(said, known)
     return Sentence(parts, (*clauses, *left))
-
-
-def owner(word: str) -> str:
-    """Whose something is by a word as ``carl's``; "" for another word."""
-    return word[:-2] if word.casefold().endswith(("'s", "’s")) else ""
 
 
 def one_after_the_other(said: Words, known: Known) -> tuple[Words, tuple[Words, ...]]:

@@ -11,11 +11,11 @@ from dataclasses import replace
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
-from . import ast, clauses, nearly, phrases
+from . import ast, nearly, phrases
 from .diagnostics import Diagnostic, is_mixed_up
 from .english import MODALS, VERBS
 from .ir import Beat
-from .pronouns import BOTH, ONE
+from .pronouns import BOTH, ONE, OWNERS, owner
 from .things import Thing, thing
 from .words import ARTICLES
 
@@ -46,8 +46,8 @@ class Fallback:
         reader = self.reader
         titles = all(word.span.text.istitle() for word in node.words[:3])
         for k, word in enumerate(node.words):
-            owned = clauses.owner(word.span.text).casefold() == word.text.casefold()
-            who = clauses.owner(word.text) or (word.text if owned else "")
+            owned = owner(word.span.text).casefold() == word.text.casefold()
+            who = owner(word.text) or (word.text if owned else "")
             known = reader.targets.is_name(word) or reader.targets.is_thing(word)
             unknown = bool(who) and who not in (*reader.characters, *ONE) and not known
             known = known or word.text in _COMMON or phrases.is_small(word.text)
@@ -194,6 +194,6 @@ class Fallback:
         first, *more = text.split() or [""]
         if first.casefold() in ONE:
             text = " ".join((beat.character, *more))
-        elif first.casefold() in clauses.OWNERS:
+        elif first.casefold() in OWNERS:
             text = " ".join((f"{beat.character}'s", *more))
         return replace(beat, said=text)

@@ -1,8 +1,8 @@
 """What is shown of a sentence that cannot be acted as it is written: as much of it as can.
 
-Assumes the words of a beat, and what was reported when it was read. Guarantees that a slip of the finger
-stays an error, so that it is told, and that there is always something somebody can do: they look at what the
-sentence names, or wait.
+Assumes the words of a beat, and what was reported when it was read. Guarantees that there is always something
+somebody can do: they look at what the sentence names, or wait. A word that is an action's or a name but for a
+letter stays an error, as far as it is told from another English word.
 """
 
 from __future__ import annotations

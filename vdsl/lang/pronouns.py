@@ -15,6 +15,8 @@ _BODIES = {
 }  # fmt: skip
 #: Who acts may be said so, where somebody acted or was spoken of before.
 ONE = ("he", "she")
+#: Whose something is, before it, and who that is.
+OWNERS = {"his": "he", "her": "she"}
 #: Two who are about, or acted or were spoken of last: they do it both, or to each other.
 BOTH = ("they", "both")
 #: All who are about.
@@ -39,6 +41,11 @@ _PEOPLE = frozenset(
     """.split()  # noqa: SIM905 (a list of two hundred quoted words reads worse)
 )
 _ENDS = ("man", "woman", "men", "women")
+
+
+def owner(word: str) -> str:
+    """Whose something is by a word as ``carl's``; "" for another word."""
+    return word[:-2] if word.casefold().endswith(("'s", "’s")) else ""
 
 
 def is_person(word: str) -> bool:

@@ -22,11 +22,11 @@ from .clauses import (
     is_ing,
     one_sentence,
     owned,
-    owner,
     subject,
 )
 from .english import is_past
 from .phrases import Known, Words, says_how
+from .pronouns import owner
 from .things import thing
 from .words import ARTICLES, PREPOSITIONS, fold
 

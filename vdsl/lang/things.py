@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from .diagnostics import is_mixed_up
 from .english import MODALS, PAST, VERBS, is_not
 from .phrases import Known, Words, is_third, of_several, says_how
+from .pronouns import OWNERS, owner
 from .words import ARTICLES, PREPOSITIONS, plain_forms
 
 _IT = ("it", "it's", "that's")
@@ -52,8 +53,8 @@ def thing(words: Words, known: Known, acting: bool = False) -> Thing | None:
     first = words[0].text
     if first in (*_IT, *_THERE, *_INDEFINITE) and len(words) > 1:
         return _unnamed(words, known)
-    owner = _owner(first, known)
-    article = first in ARTICLES or bool(owner)
+    whose = _owner(first, known)
+    article = first in ARTICLES or bool(whose)
     noun = tuple(word for word in words if not says_how(word))[1 if article else 0 :]
     verb = _verb(noun, known)
     if acting and not (verb and article):
@@ -69,13 +70,13 @@ def thing(words: Words, known: Known, acting: bool = False) -> Thing | None:
     slip = any(is_mixed_up(word.text, name) for word in group for name in known.named)
     if (slip and not is_one) or not (is_one or (article and not person)):
         return None
-    return Thing(group, owner)
+    return Thing(group, whose)
 
 
 def _owner(word: str, known: Known) -> str:
     """Whose something is by the word before it."""
-    name = word[:-2] if word.endswith("'s") else ""
-    return name if name in known.named else {"his": "he", "her": "she"}.get(word, "")
+    name = owner(word)
+    return name if name in known.named else OWNERS.get(word, "")
 
 
 def _unnamed(words: Words, known: Known) -> Thing | None:

@@ -101,41 +101,30 @@ def _batch(
     moved: Tensor | None,
 ) -> Batch:
     rng = np.random.default_rng((config.seed, 1, *key))
-    glanced = config.augment and rng.random() < config.glanced
-    count, keyed = phase.frames, phase.key_frames if config.contrast_weight else 0
+    glanced = bool(config.augment and rng.random() < config.glanced)
     if not phase.size:
-        count, keyed = 2 if glanced else data.frames, 0
+        return _by_guides(data, clips, config, glanced, moved, rng)
+    count, keyed = phase.frames, phase.key_frames if config.contrast_weight else 0
     if count + keyed > data.frames:
         raise RankerError(f"query and key need {count + keyed} frames, the clips have {data.frames}")
     views = [_view(data, int(index), phase.size, (count, keyed), glanced, config, rng) for index in clips]
-    classes, hints = data.classes[clips], data.hints[1][clips]
-    turned = np.array([name.startswith(MIRRORED) for name in data.hints[0]], bool)
-    mirror = mirror_words(data.words.movements)
+    flipped = np.array([view.flipped for view in views])
     own = None if moved is None else moved[torch.from_numpy(clips)]
     for row, view in enumerate(views):
-        if view.flipped:
-            hints[row, turned] *= -1
-            if classes[row, 0] >= 0:
-                classes[row, 0] = mirror[classes[row, 0]]
         if own is not None:
             unmoved = config.augment and rng.random() < config.unmoved
             if unmoved or (view.guides is not None and not view.kept_back):
                 own[row] = torch.nan  # what guides tell need not be guessed at
             elif view.flipped:
                 own[row] = mirrored(own[row])
-    pictures = torch.from_numpy(np.stack([view.pictures for view in views])) if phase.size else None
+    pictures = torch.from_numpy(np.stack([view.pictures for view in views]))
     times = torch.from_numpy(np.stack([view.times for view in views]))
-    professional = data.professional[clips] * (1 - config.graded * (1 - data.grade[clips]))
-    professional = np.where(data.doubtful[clips], np.nan, professional)
     return Batch(
-        None if pictures is None else pictures[:, :count],
+        pictures[:, :count],
         times[:, :count],
-        times[:, :0] if pictures is None else pictures[:, count:],
+        pictures[:, count:],
         times[:, count:],
-        torch.from_numpy(professional.astype(np.float32)),
-        torch.from_numpy(data.liked[clips]),
-        torch.from_numpy(classes),
-        torch.from_numpy(hints),
+        *_labels(data, clips, flipped, config),
         torch.from_numpy(np.stack([view.marks for view in views])),
         torch.from_numpy(np.stack([view.mapped for view in views])),
         torch.from_numpy(np.stack([view.meant for view in views])),
@@ -145,11 +134,77 @@ def _batch(
     )
 
 
+def _by_guides(
+    data: Dataset,
+    clips: NDArray[np.int64],
+    config: TrainConfig,
+    glanced: bool,
+    moved: Tensor | None,
+    rng: np.random.Generator,
+) -> Batch:
+    """A batch of which guides alone are looked at: all clips at once, which is many times as quick.
+
+    Raises :class:`RankerError` for a set without guides.
+    """
+    found = data.guides(clips)
+    if found is None:
+        raise RankerError("there are no guides to look at")
+    flipped = rng.random(len(clips)) < 0.5 if config.augment else np.zeros(len(clips), bool)
+    guides = found.mirrored_where(flipped)
+    times = np.tile(_times(data), (len(clips), 1))
+    marks, meant = data.frame_hints[1][clips], data.meant[clips]
+    turned = np.array([name.startswith(MIRRORED) for name in data.frame_hints[0]], bool)
+    marks[np.ix_(flipped, np.arange(marks.shape[1]), turned)] *= -1
+    if glanced:  # at two of the frames, in every clip others
+        rows = np.arange(len(clips))[:, None]
+        seen = np.sort(rng.permuted(np.tile(np.arange(data.frames), (len(clips), 1)), axis=1)[:, :2], axis=1)
+        unknown = np.full_like(guides.flow, np.nan)
+        guides = Guides(guides.maps[rows, seen], unknown, guides.marks[rows, seen])
+        times, marks, meant = times[rows, seen], marks[rows, seen], meant[rows, seen]
+    at, maps, flow, told = (
+        torch.from_numpy(part) for part in (times, guides.maps, guides.flow, guides.marks)
+    )
+    return Batch(
+        None,
+        at,
+        at[:, :0],
+        at[:, :0],
+        *_labels(data, clips, flipped, config),
+        torch.from_numpy(marks),
+        torch.from_numpy(marks),
+        torch.from_numpy(meant),
+        None if moved is None else torch.full_like(moved[: len(clips)], torch.nan),  # guides tell it
+        Guided(maps, flow.float(), told.float(), at),
+        torch.from_numpy(clips),
+    )
+
+
+def _labels(
+    data: Dataset, clips: NDArray[np.int64], flipped: NDArray[np.bool_], config: TrainConfig
+) -> tuple[Tensor, Tensor, Tensor, Tensor]:
+    """What is known of clips, of which some are seen in the mirror: professional, liked, classes, hints."""
+    classes, hints = data.classes[clips], data.hints[1][clips]
+    turned = np.array([name.startswith(MIRRORED) for name in data.hints[0]], bool)
+    hints[np.ix_(flipped, turned)] *= -1
+    mirror = np.array([*mirror_words(data.words.movements), -1])  # the last for what is not known
+    classes[flipped, 0] = mirror[classes[flipped, 0]]
+    professional = data.professional[clips] * (1 - config.graded * (1 - data.grade[clips]))
+    professional = np.where(data.doubtful[clips], np.nan, professional)
+    known = (professional.astype(np.float32), data.liked[clips], classes, hints)
+    good, liked, words, told = (torch.from_numpy(part) for part in known)
+    return good, liked, words, told
+
+
+def _times(data: Dataset) -> NDArray[np.float32]:
+    """Places of the frames in a clip's time, 0..1."""
+    return frame_times(ModelConfig((), (), (), frames=data.frames)).numpy()
+
+
 @dataclass(frozen=True, eq=False)
 class _View:
     """A clip as it is looked at once.
 
-    pictures: uint8 [query + key frames, S, S, 3], or nothing; times: of these; marks: of the query's frames
+    pictures: uint8 [query + key frames, S, S, 3]; times: of these; marks: of the query's frames
     guides: None in a set without; told_at, mapped, meant: times and marks of the frames they are of, and
         whether these are meant to show the subject
     flipped: whether it is seen in the mirror; kept_back: whether its guides are not to be known
@@ -177,21 +232,17 @@ def _view(
 ) -> _View:
     """counts: frames of query and key; glanced: whether guides are told of the query's frames alone"""
     count, keyed = counts
-    times = frame_times(ModelConfig((), (), (), frames=data.frames)).numpy()
+    times = _times(data)
     chosen = rng.permutation(data.frames)
     picked = np.concatenate([np.sort(chosen[:count]), np.sort(chosen[count : count + keyed])])
-    pictures, flipped = np.zeros((0, 0, 0, 3), np.uint8), False
-    if size:
-        pictures = data.clip(index, picked.tolist(), size)
-        pictures, flipped = varied(pictures, rng) if config.augment else (pictures, False)
-    elif config.augment:
-        flipped = bool(rng.random() < 0.5)
+    pictures = data.clip(index, picked.tolist(), size)
+    pictures, flipped = varied(pictures, rng) if config.augment else (pictures, False)
     marks = data.frame_hints[1][index]
     if flipped:
         marks = np.where([name.startswith(MIRRORED) for name in data.frame_hints[0]], -marks, marks)
     guides = data.guides(np.array([index])) if config.guides else None
     seen = picked[:count] if glanced else np.arange(data.frames)
-    kept_back = guides is not None and size > 0 and bool(rng.random() < config.unguided)
+    kept_back = guides is not None and bool(rng.random() < config.unguided)
     if guides is not None:
         guides = guides.mirrored() if flipped else guides
         unknown = np.float16(np.nan if glanced or kept_back else 1)

@@ -46,7 +46,8 @@ PERSON_POINTS = ("crown", "eyes", "pocket", "waist", "feet")
 ALL_POINTS = (*POINTS, *(f"{point}_{k + 1}" for k in range(PEOPLE) for point in PERSON_POINTS))
 #: Marks that every shot has, whoever is in it. Of each point how far it is to the right and to the top, in
 #: half frames from the middle, no further than 3, and by how much nearer than the point (log) what is seen in
-#: its place is, 0 where that is the subject itself. Where the face points, to the right, up and away.
+#: its place is, 0 where that is the subject itself; of a point behind the camera the side it lies on, at 3.
+#: Where the face points, to the right, up and away.
 #: Logarithms: of the focal length (mm) by the distance of the waist, of that distance (metres) and of the
 #: focal length. Metres of the camera above the eyes; radians it leans to the right; the logarithm of the
 #: seconds the shot lasts. By how much nearer than the eyes (log) what is seen in their place is, the subject
@@ -62,11 +63,12 @@ SUBJECT_MARKS = (
 #: right, and the cosine between it and the way to the camera; how far the eyes are away (log metres); and 1
 #: where the shot is about them, 0 where not. Then how fast the camera goes, turns, and how unevenly it goes
 #: at most between half the way from the judged frame before and half the way to the next: square roots of
-#: metres a second, of radians a second, and of metres by the third power of a second.
+#: metres a second, of radians a second, and of metres by the third power of a second. And how far it is to
+#: the nearest thing, drawn wall or person, in metres, at most 1.
 PEOPLE_MARKS = (
     *(f"{what}{point}" for point in ALL_POINTS[len(POINTS) :] for what in ("right_", "up_", "covered_")),
     *(f"{what}_{k + 1}" for k in range(PEOPLE) for what in ("right_face", "turned", "distance", "about")),
-    *("pace", "turning", "jerk"),
+    *("pace", "turning", "jerk", "room"),
 )
 #: All marks of a frame. In the mirror those of ``right`` change their sign.
 MARKS = (*SUBJECT_MARKS, *PEOPLE_MARKS)
@@ -83,8 +85,8 @@ class Guides:
     flow: float16 [P, pairs, FLOW, FLOW, 2], how far what is seen in a cell of the first frame of a pair has
         gone in the second by the camera's motion alone, in half frames to the right and down; NaN where not
         known, as when only some of the frames were drawn
-    marks: float16 [P, T, len(MARKS)]; NaN for what there is not: what lies behind the camera has no place,
-        what is out of the frame is not covered by anything
+    marks: float16 [P, T, len(MARKS)]; NaN for what there is not: what is out of the frame is not covered by
+        anything
     """
 
     maps: NDArray[np.uint8]
@@ -102,6 +104,13 @@ class Guides:
         flow = self.flow[:, :, :, ::-1] * np.array((-1, 1), np.float16)
         marks = np.where(_TURNED, -self.marks, self.marks)[..., _SWAPPED]
         return Guides(self.maps[:, :, :, ::-1], flow, marks)
+
+    def mirrored_where(self, which: NDArray[np.bool_]) -> Guides:
+        """The same with some of the shots in the mirror; which: [P]."""
+        out = Guides(self.maps.copy(), self.flow.copy(), self.marks.copy())
+        some = self[np.flatnonzero(which)].mirrored()
+        out.maps[which], out.flow[which], out.marks[which] = some.maps, some.flow, some.marks
+        return out
 
     def check(self, shots: int, frames: int, whole: int) -> None:
         """Raises ValueError where these are not of so many shots and frames, of ``whole`` that they have."""

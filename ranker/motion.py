@@ -76,7 +76,11 @@ def motions(data: Dataset) -> NDArray[np.float32]:
 
 
 def _of_shard(frames: NDArray[np.uint8], device: torch.device) -> NDArray[np.float32]:
-    """The motion of clips [n, T, H, W, 3]; a core to each few of them, as single steps are small."""
+    """The motion of clips [n, T, H, W, 3]; a core to each few of them, as single steps are small.
+
+    On a GPU by this thread alone: torch loads what solves equations there with its first call, and fails
+    where several threads make that at a time (pytorch issue 90613).
+    """
 
     @torch.inference_mode()
     def moved(begin: int) -> NDArray[np.float32]:
@@ -85,11 +89,14 @@ def _of_shard(frames: NDArray[np.uint8], device: torch.device) -> NDArray[np.flo
 
     if not len(frames):
         return np.zeros((0, len(pairs(frames.shape[1])), NUMBERS), np.float32)
+    begins = range(0, len(frames), _AT_ONCE)
+    if device.type != "cpu":
+        return np.concatenate([moved(begin) for begin in begins])
     threads = torch.get_num_threads()
     torch.set_num_threads(1)
     try:
         with ThreadPoolExecutor(threads) as pool:
-            return np.concatenate(list(pool.map(moved, range(0, len(frames), _AT_ONCE))))
+            return np.concatenate(list(pool.map(moved, begins)))
     finally:
         torch.set_num_threads(threads)
 

@@ -156,6 +156,59 @@ def _from_behind_ben(camera: CameraProposal, story: StoryProposal, at: np.ndarra
     return replace(camera.track, position=place, look_at=anna, rotation=look_at_rotation(place, anna))
 
 
+def test_what_lies_behind_the_camera_is_told_of_and_what_there_is_not_is_not(camerawork: Camerawork) -> None:
+    act, grid = proposed(
+        STORY.replace("(anna wave)", "(anna greet ben)").replace("SHOT) FOCUS", "static medium)")
+    )
+    camera = grid.cameras[0]
+    story = next(s for s in grid.story if s.index == camera.story)
+    about = about_of(act.line.shots[0], grid, act.filming, act.staged)
+    at = segment_frames(story.frames)
+    between = replace(camera, track=_from_between(camera, story))
+    seen = camerawork.judge_frames(act.staged, "board", grid.story, (between,), about=[about])
+    assert seen.guides is not None
+    told = {name: seen.guides.marks[0, :, k].astype(float) for k, name in enumerate(MARKS)}
+    aside = np.maximum(np.abs(told["right_other_1"]), np.abs(told["up_other_1"]))
+    np.testing.assert_allclose(aside, 3.0)  # ben, behind the camera: out of the picture, as far as is told
+    assert np.isnan(told["covered_other_1"]).all()
+    assert np.isnan(told["right_other_2"]).all()
+    ben = story.performances["ben"].world_from_joint[at, JOINT["head"], :3, 3].astype(float)
+    away = ben - between.track.position[at]
+    side = np.einsum("tac,tc->ta", camera_axes(between.track.rotation[at])[:, :2], away)
+    assert (np.sign(told["right_other_1"]) == np.sign(side[:, 0])).all()
+
+
+def _from_between(camera: CameraProposal, story: StoryProposal) -> CameraTrack:
+    """A look past anna with ben behind the camera, to one side of its axis."""
+    anna, ben = (
+        story.performances[name].world_from_joint[:, JOINT["head"], :3, 3].astype(float)
+        for name in ("anna", "ben")
+    )
+    beside = np.array([[0.0, 0.0, 1.0]])
+    beside = 0.3 * np.cross(ben - anna, beside) / np.linalg.norm(ben - anna, axis=1, keepdims=True)
+    place, aim = anna + 0.4 * (ben - anna) + beside, anna + beside
+    return replace(camera.track, position=place, look_at=aim, rotation=look_at_rotation(place, aim))
+
+
+def test_how_much_room_a_camera_has_is_told(camerawork: Camerawork) -> None:
+    act, grid = filmed("static medium eye-level")
+    shot = act.line.shots[0]
+    about = about_of(shot, grid, act.filming, act.staged)
+    seen = camerawork.judge_frames(
+        act.staged, "board", grid.story, grid.cameras, about=[about] * len(grid.cameras)
+    )
+    assert seen.guides is not None
+    room = seen.guides.marks[:, :, MARKS.index("room")].astype(float)
+    measured = np.array([c.measures["clearance"] for c in grid.cameras])
+    assert np.abs(room.min(axis=1) - measured).max() < 0.02  # these cameras stand still
+    near = replace(grid.cameras[0], track=_from_behind_ben(grid.cameras[0], grid.story[0], segment_frames(2)))
+    close = camerawork.judge_frames(act.staged, "board", grid.story, (near,), about=[about])
+    assert close.guides is not None
+    assert (
+        close.guides.marks[0, :, MARKS.index("room")].max() < 0.45
+    )  # half a metre from the middle of his head
+
+
 def test_people_are_told_of_one_by_one(camerawork: Camerawork) -> None:
     act, grid = filmed("static medium eye-level two-shot")
     shot, camera = act.line.shots[0], grid.cameras[0]

@@ -10,7 +10,7 @@ import pytest
 import torch
 from ranker_clips import FRAMES, SIZE, TINY, WORDS, clip, model_config
 
-from ranker.batches import batches
+from ranker.batches import batches, mirror_words
 from ranker.composed import COMPOSED, EYES_INSIDE, SUMMED, composed, over_time
 from ranker.config import Phase
 from ranker.data import Dataset, ShardWriter
@@ -228,7 +228,7 @@ def test_a_shot_without_guides_is_judged_as_by_a_network_without() -> None:
 
 def test_guides_are_learnt_from_and_a_shot_is_judged_by_its_own(tmp_path: Path) -> None:
     write_guided(tmp_path / "data", 60)
-    phases = (Phase(60, 0, batch=16), replace(TINY.phases[0], epochs=1))
+    phases = (Phase(120, 0, batch=16), replace(TINY.phases[0], epochs=1))
     config = replace(TINY, phases=phases, unguided=0.0, guides=32, motion=0)
     train(tmp_path / "data", tmp_path / "out", config)
     ranker = Ranker.load(tmp_path / "out" / "weights", "cpu")
@@ -325,3 +325,39 @@ def test_clips_without_frames_are_learnt_from_by_their_guides_alone(tmp_path: Pa
     guides = joined([guides_of(rng, k % 2 == 0, 0) for k in range(4)])
     margin = ranker.score(frames, guides).margin
     assert margin[::2].min() > margin[1::2].max()
+
+
+def test_a_batch_of_guides_is_its_clips_some_of_them_in_the_mirror(tmp_path: Path) -> None:
+    rng = np.random.default_rng(3)
+    with ShardWriter(tmp_path, WORDS, (SIZE, SIZE), FRAMES, shard=16) as writer:
+        for i in range(24):
+            words = WORDS.movements[i % 3], WORDS.scales[0], WORDS.angles[0]
+            about = {"hints": {"right_way": float(rng.normal()), "speed": float(rng.normal())}}
+            about["frames"] = {"right_eyes": rng.normal(size=FRAMES).tolist()}
+            writer.add(None, i % 2 == 0, *words, "a", 0.0, "", about, guides_of(rng, i % 2 == 0, i % 3))
+    data = Dataset(tmp_path)
+    phase, clips = Phase(1, 0, batch=24), np.arange(24)
+    (batch,) = batches(data, clips, phase, replace(TINY, augment=True, glanced=0.0), 0)
+    assert batch.guides is not None
+    assert batch.query is None
+    swapped = mirror_words(WORDS.movements)
+    turned = 0
+    for row, index in enumerate(batch.clips.tolist()):
+        own = data.guides(np.array([index]))
+        assert own is not None
+        flipped = not np.array_equal(batch.guides.maps[row].numpy(), own.maps[0])
+        seen = own.mirrored() if flipped else own
+        np.testing.assert_array_equal(batch.guides.maps[row].numpy(), seen.maps[0])
+        np.testing.assert_array_equal(batch.guides.flow[row].numpy(), seen.flow[0].astype(np.float32))
+        np.testing.assert_array_equal(batch.guides.marks[row].numpy(), seen.marks[0].astype(np.float32))
+        word, sign = int(data.classes[index, 0]), -1.0 if flipped else 1.0
+        assert int(batch.classes[row, 0]) == (swapped[word] if flipped else word)
+        np.testing.assert_array_equal(batch.hints[row].numpy(), data.hints[1][index] * (sign, 1.0))
+        np.testing.assert_array_equal(batch.mapped[row].numpy(), data.frame_hints[1][index] * sign)
+        turned += flipped
+    assert 4 < turned < 20
+    (glance,) = batches(data, clips, phase, replace(TINY, augment=True, glanced=1.0), 0)
+    assert glance.guides is not None
+    assert glance.guides.maps.shape[:2] == glance.query_times.shape == glance.mapped.shape[:2] == (24, 2)
+    assert (glance.query_times[:, 0] < glance.query_times[:, 1]).all()
+    assert glance.guides.flow.isnan().all()

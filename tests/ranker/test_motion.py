@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import threading
 from pathlib import Path
 
 import cv2
@@ -10,6 +11,7 @@ import pytest
 import torch
 from ranker_clips import FRAMES, SIZE, model_config, write_clips
 
+from ranker import motion as of_motion
 from ranker.data import Dataset
 from ranker.model import ShotRanker, frame_times, normalised
 from ranker.motion import NUMBERS, SIDE, mirrored, motion, motions, pairs
@@ -97,6 +99,24 @@ def test_the_motion_of_a_set_is_kept_and_worked_out_anew_where_it_does_not_fit(t
         assert np.array_equal(motions(data), first)
     np.save(kept, first[:3])
     assert np.array_equal(motions(data), first)
+
+
+@pytest.mark.parametrize(("device", "alone"), [("cpu", False), ("meta", True)])
+def test_equations_are_solved_by_one_thread_but_on_the_processor(
+    device: str, alone: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """On a GPU several threads that ask torch for the first time fail; `meta` stands for one here."""
+    asked: set[int] = set()
+
+    def noted(clips: torch.Tensor) -> torch.Tensor:
+        assert clips.device.type == device
+        asked.add(threading.get_ident())
+        return torch.zeros(len(clips), len(pairs(FRAMES)), NUMBERS)
+
+    monkeypatch.setattr(of_motion, "motion", noted)
+    frames = np.zeros((9, FRAMES, SIZE, SIZE, 3), np.uint8)
+    assert of_motion._of_shard(frames, torch.device(device)).shape == (9, len(pairs(FRAMES)), NUMBERS)
+    assert (asked == {threading.get_ident()}) == alone
 
 
 def test_heads_hear_of_motion_only_where_it_is_known() -> None:

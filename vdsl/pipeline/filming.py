@@ -15,7 +15,7 @@ from runtime.raster.types import STYLES, Camera, Frames, Views
 from ..cinema.track import CameraTrack, camera_axes
 from ..propose.types import CameraProposal, StoryProposal
 from ..stage.assemble import StagedScene, palettes
-from .guides import About, guides_of, paces_of, pointed, roles_of
+from .guides import About, guides_of, paces_of, pointed, roles_of, room_of
 from .shutter import between, camera_between, exposed_frames, moments_needed
 
 #: The discriminator looks at this many frames of this size (the paper's section 3.3).
@@ -94,7 +94,10 @@ class Camerawork:
         assert drawn.probed is not None
         frames = drawn.color.reshape(len(cameras), len(which), *drawn.color.shape[1:])
         opened = [bool(c.hidden_walls.any()) for c in cameras]
-        told = guides_of(drawn.guides, drawn.probed, at, views.camera, places, opened, paces, which, SEGMENTS)
+        hidden = np.stack([c.hidden_walls for c in cameras])
+        room = room_of(staged.world.solids, views.camera.position, hidden, places)
+        gone = np.column_stack([paces, room])
+        told = guides_of(drawn.guides, drawn.probed, at, views.camera, places, opened, gone, which, SEGMENTS)
         return Seen(frames, told)
 
     def judge_ids(

@@ -28,10 +28,12 @@ from ranker.guides import (
 )
 from ranker.guides import NEAREST as NEAREST_TOLD
 from runtime.raster.types import FAR, GUIDE_SIDE, NEAREST, OTHERS, SUBJECT, Camera, Probed
+from runtime.world import Solids
 
+from ..cinema.space import REACH, clearance, nearby, to_people
 from ..cinema.track import CameraTrack, project
 from ..lang.ir import Shot
-from ..propose.subjects import Filming, find_object, people_beside, subject_of
+from ..propose.subjects import Filming, company_of, find_object, people_beside, subject_of
 from ..propose.types import ProposalGrid
 from ..stage.assemble import StagedScene
 
@@ -48,6 +50,7 @@ class Places:
     points: float32 [T, len(ALL_POINTS), 3], NaN where there is no such point; face: [T, 3], its direction
     faces: [T, PEOPLE, 3], those of the people who are told of one by one, NaN where there is none
     meant: [PEOPLE], 1 where the camera is about them, 0 where not
+    others: everybody but the subject, as pillars: foot and crown [T, 3], and radius
     seconds: how long the performance is
     """
 
@@ -55,11 +58,14 @@ class Places:
     face: NDArray[np.float32]
     faces: NDArray[np.float32]
     meant: NDArray[np.float32]
+    others: tuple[tuple[NDArray[np.float64], NDArray[np.float64], float], ...]
     seconds: float
 
     def at(self, frames: NDArray[np.integer]) -> Places:
         """The same in some of the frames."""
-        return replace(self, points=self.points[frames], face=self.face[frames], faces=self.faces[frames])
+        others = tuple((foot[frames], crown[frames], radius) for foot, crown, radius in self.others)
+        points, face, faces = (told[frames] for told in (self.points, self.face, self.faces))
+        return replace(self, points=points, face=face, faces=faces, others=others)
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,7 +95,8 @@ def about_of(shot: Shot, grid: ProposalGrid, filming: Filming, staged: StagedSce
                 points[:, first + n] = one.landmarks[name]
             faces[:, k], meant[k] = one.face, float(k < len(own))
         face = subject.face.astype(np.float32)
-        places[story.index] = Places(points, face, faces, meant, story.frames / filming.fps)
+        company = tuple(company_of(shot, story, filming, subject))
+        places[story.index] = Places(points, face, faces, meant, company, story.frames / filming.fps)
     return About(_objects_of(shot, grid, filming, staged), places)
 
 
@@ -121,7 +128,8 @@ def roles_of(staged: StagedScene, about: Sequence[About]) -> NDArray[np.uint8]:
 class Pointed(NamedTuple):
     """Where points are in N pictures.
 
-    place: [N, K, 2], half frames from the middle to the right and to the top, NaN behind the camera
+    place: [N, K, 2], half frames from the middle to the right and to the top, behind the camera as far off as
+        is told, NaN where there is no such point
     depth: [N, K], metres along the axis; pixels: int32 [N, K] counted row by row, -1 out of the picture
     """
 
@@ -136,11 +144,21 @@ def pointed(camera: Camera, places: Sequence[Places], size: tuple[int, int]) -> 
     position, focal = camera.position.astype(float), camera.focal.astype(float)
     xy, depth = project(points, position, camera.axes.astype(float), focal, camera.sensor)
     before = np.isfinite(depth) & (depth > _BEHIND)
-    place = np.where(before[..., None], np.clip((2 * xy - 1) * (1, -1), -_FARTHEST, _FARTHEST), np.nan)
+    place = np.clip((2 * xy - 1) * (1, -1), -_FARTHEST, _FARTHEST)
+    place = np.where(before[..., None], place, _aside(points, camera))
     inside = before & (np.abs(place) < 1).all(axis=-1)
     column, row = (np.where(inside, xy[..., k] * size[k], 0).astype(np.int32) for k in (0, 1))
     column, row = np.minimum(column, size[0] - 1), np.minimum(row, size[1] - 1)
     return Pointed(place, depth, np.where(inside, row * np.int32(size[0]) + column, np.int32(-1)))
+
+
+def _aside(points: NDArray[np.float64], camera: Camera) -> NDArray[np.float64]:
+    """To which side of N cameras points [N, K, 3] lie that are behind them, at the edge of what is told of
+    places: that they are there, and not in the frame, is to be known."""
+    axes, away = camera.axes.astype(float), points - camera.position.astype(float)[:, None]
+    side = np.einsum("nac,nkc->nka", axes[:, :2], away)
+    most = np.maximum(np.abs(side).max(axis=-1, keepdims=True), 1e-9)
+    return np.asarray(_FARTHEST * side / most)
 
 
 def guides_of(
@@ -150,7 +168,7 @@ def guides_of(
     camera: Camera,
     places: Sequence[Places],
     opened: Sequence[bool],
-    paces: NDArray[np.floating],
+    gone: NDArray[np.floating],
     which: Sequence[int],
     whole: int,
 ) -> Guides:
@@ -158,7 +176,7 @@ def guides_of(
 
     drawn: uint8 [P k, SIDE, SIDE, 6] of the renderer; probed: [P k, points], what it saw ``at`` the points
     camera: of these P k pictures; places: [P] in these k frames; opened: [P], whether walls are left out
-    paces: [P k, 3], as :func:`paces_of` tells them
+    gone: [P k, 4], how the camera goes as :func:`paces_of` tells it, and its :func:`room_of`
     which: the k frames they are, of ``whole``
     """
     shots = len(places)
@@ -172,7 +190,7 @@ def guides_of(
     flow = np.full((shots, len(matched), FLOW, FLOW, 2), np.nan, np.float16)
     if count == whole:
         flow[:] = _flow(_nearness(maps[..., CHANNELS.index("nearness")]), camera, shots, matched)
-    return Guides(maps, flow, _marks(probed, at, camera, places, opened, paces))
+    return Guides(maps, flow, _marks(probed, at, camera, places, opened, gone))
 
 
 def paces_of(track: CameraTrack, at: NDArray[np.integer], seconds: float) -> NDArray[np.float64]:
@@ -197,13 +215,31 @@ def paces_of(track: CameraTrack, at: NDArray[np.integer], seconds: float) -> NDA
     return out
 
 
+def room_of(
+    solids: Solids, position: NDArray[np.floating], hidden: NDArray[np.bool_], places: Sequence[Places]
+) -> NDArray[np.float64]:
+    """Metres from cameras to the nearest thing, drawn wall or person, at most ``REACH``: [P k].
+
+    position: [P k, 3] of P shots; hidden: [P, W], walls that are left out; places: [P] in these k frames
+    """
+    camera = position.astype(float)[:, None]
+    count = len(camera) // len(places)
+    found = clearance(solids, nearby(solids, camera), np.repeat(hidden, count, axis=0))
+    people = np.full(len(camera), REACH)
+    for k, of in enumerate(places):
+        rows = slice(k * count, (k + 1) * count)
+        others = [(foot[:, None], crown[:, None], radius) for foot, crown, radius in of.others]
+        people[rows] = to_people(camera[rows], others)
+    return np.minimum(np.minimum(found.object, found.shown), people)
+
+
 def _marks(
     probed: Probed,
     at: Pointed,
     camera: Camera,
     places: Sequence[Places],
     opened: Sequence[bool],
-    paces: NDArray[np.floating],
+    gone: NDArray[np.floating],
 ) -> NDArray[np.float16]:
     """float16 [P, T, len(MARKS)]; probed: what is seen where the points are, [P T, points]."""
     shots, near = len(places), probed.near
@@ -228,7 +264,7 @@ def _marks(
     alone += [before[:, POINTS.index("eyes")], np.repeat(np.asarray(opened, float), count)]
     of_people = _people(points, position, axes, places, count)
     first, others = (told[:, part].reshape(len(told), -1) for part in (own_points, ~own_points))
-    marks = np.concatenate([first, np.stack(alone, axis=-1), others, of_people, paces], axis=1)
+    marks = np.concatenate([first, np.stack(alone, axis=-1), others, of_people, gone], axis=1)
     assert marks.shape[1] == len(MARKS)
     return marks.reshape(shots, count, len(MARKS)).astype(np.float16)
 

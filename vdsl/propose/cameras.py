@@ -29,8 +29,8 @@ from .focusing import focused, unseen_racks
 from .rejection import REASONS, SOFT, no_room, reasons
 from .shooting import shoot
 from .subjects import Filming as Filming
+from .subjects import company_of, foci_of, held_by
 from .subjects import find_object as find_object
-from .subjects import foci_of, held_by, pillars_of
 from .subjects import subject_of as subject_of
 from .types import CameraProposal, ProposalGrid, StoryProposal
 
@@ -260,8 +260,7 @@ def _takes(
     if subject.kind == "thing" and shot.focus is not None:
         item = find_object(filming.world, shot.focus)
         ignore = item.id if item is not None else None
-    owner = shot.whose if shot.view == "pov" else ()
-    others = pillars_of(shot, story, filming, {subject.name, *subject.heads, *owner})
+    others = company_of(shot, story, filming, subject)
     return Takes(
         track,
         sizes,

@@ -257,6 +257,14 @@ def _point(target: Target, story: StoryProposal, filming: Filming) -> Array:
     return np.asarray((moved.astype(float) @ own)[:, :3])
 
 
+def company_of(
+    shot: Shot, story: StoryProposal, filming: Filming, subject: Subject
+) -> list[tuple[Array, Array, float]]:
+    """Everybody but a shot's subject, and whoever it looks through the eyes of, as :func:`pillars_of`."""
+    owner = shot.whose if shot.view == "pov" else ()
+    return pillars_of(shot, story, filming, {subject.name, *subject.heads, *owner})
+
+
 def pillars_of(
     shot: Shot, story: StoryProposal, filming: Filming, without: set[str]
 ) -> list[tuple[Array, Array, float]]:

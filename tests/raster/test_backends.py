@@ -1,4 +1,4 @@
-"""The Vulkan backend against the CPU's, on whatever Vulkan there is (in CI: Mesa's lavapipe).
+"""The Vulkan and CUDA backends against the CPU's, on whatever there is of them (in CI: Mesa's lavapipe).
 
 A process draws on one device, so each draws the same pictures in a process of its own.
 """
@@ -85,16 +85,18 @@ def drawn(device: str, folder: Path) -> dict[str, np.ndarray]:
     """What ``device`` draws; skips the test where there is no such device."""
     out = folder / f"{device}.npz"
     code = f"import sys; sys.path[:0] = {[str(HERE.parents[2]), str(HERE.parent)]!r}\n"
-    code += f"from test_vulkan import draw_all; draw_all({device!r}, {str(out)!r})"
+    code += f"from test_backends import draw_all; draw_all({device!r}, {str(out)!r})"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=LIMIT)
-    if done.returncode == NO_DEVICE and device != "cpu" and not os.environ.get("VDS_EXPECT_VULKAN"):
-        pytest.skip(f"no Vulkan here: {done.stderr.strip().splitlines()[-1]}")
+    expected = device == "cpu" or os.environ.get(f"VDS_EXPECT_{device.upper()}")
+    if done.returncode == NO_DEVICE and not expected:
+        pytest.skip(f"no {device} here: {done.stderr.strip().splitlines()[-1]}")
     assert done.returncode == 0, done.stderr
     return dict(np.load(out))
 
 
-def test_vulkan_draws_what_the_cpu_draws(tmp_path: Path) -> None:
-    other = drawn("vulkan", tmp_path)
+@pytest.mark.parametrize("device", ["vulkan", "cuda"])
+def test_a_gpu_draws_what_the_cpu_draws(device: str, tmp_path: Path) -> None:
+    other = drawn(device, tmp_path)
     host = drawn("cpu", tmp_path)
     assert set(host) == set(other)
     for name, picture in host.items():

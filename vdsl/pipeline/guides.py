@@ -1,7 +1,8 @@
 """The guides of drawn shots: what the renderer knows of them, as the ranker takes it (:mod:`ranker.guides`).
 
 Assumes pictures drawn with roles. Guarantees that all that is told is of where things are in the pictures, or
-would be with a wider frame: nothing of what was asked for, no measure and no judgement goes in.
+would be with a wider frame, and of how the camera goes and how much room it has: nothing of what was asked
+for, and no judgement goes in.
 """
 
 from __future__ import annotations

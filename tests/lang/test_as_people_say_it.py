@@ -54,6 +54,8 @@ def told(found: Beat) -> tuple[str, str, str, str]:
         ("(anna gives ben the cup)", ("give", "cup", "ben", "")),
         ("(anna shows ben some flowers)", ("show", "flowers", "ben", "")),
         ("(anna sits down)", ("sit", "", "", "")),
+        ("(anna stops)", ("wait", "", "", "")),  # and makes no sign to nobody
+        ("(anna stops ben)", ("stop", "ben", "", "")),
         ("(ben cooks)", ("cook", "stove", "", "pan")),
         ("(ben cooks dinner)", ("cook", "stove", "", "pan")),
         ("(anna writes a poem)", ("write", "desk", "", "pen")),
@@ -262,7 +264,7 @@ def test_one_thing_after_the_other_is_two_lines_filmed_alike() -> None:
     [
         ("(anna trips and falls)", ["fall-down"]),
         ("(anna and ben kiss and hug)", ["kiss", "hug"]),
-        ("(ben stops and then runs away)", ["stop", "run"]),
+        ("(ben stops and then runs away)", ["wait", "run"]),
         ("(anna stands up and starts to cry)", ["stand-up", "cry"]),
         ("(anna looks at the cup and picks it up)", ["look", "pick-up"]),
         ("(they sit down and drink)", ["sit", "drink"]),

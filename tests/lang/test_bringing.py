@@ -140,3 +140,11 @@ def test_an_action_brings_only_props_there_are(brings: str, code: str) -> None:
 def test_an_action_that_needs_nothing_brings_nothing() -> None:
     _, report = read("action hum { duration 2s; brings cup }\nanna at door\n(anna hum)\n")
     assert [d.code for d in report.errors] == ["VDS145"]
+
+
+@pytest.mark.parametrize("entry", ["someone", "alone"])
+def test_an_action_is_another_one_only_of_those_there_are(entry: str) -> None:
+    own = f"action nudge {{ target optional object character; {entry} wiat; duration 2s }}\n"
+    _, report = read(own + "anna at door\n(anna nudge)\n")
+    assert [d.code for d in report.errors][:1] == ["VDS071"]
+    assert report.errors[0].fix == "wait"

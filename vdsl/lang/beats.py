@@ -118,6 +118,8 @@ class BeatReader:
             action, definition = self._done_to(action, definition, named)
         if not named and whom and self.takes_somebody(action):
             named = [Target("character", (whom,), whom, node.span, implied=True)]
+        if not named and in_hand is None and (alone := getattr(definition, "alone", "")):
+            action, definition = alone, self.catalog.get("action", alone) or definition
         thing = next((t for t in named if t.kind == "object" and not t.implied), in_hand)
         if thing is not None:
             self.it = tuple(thing.written.split("."))

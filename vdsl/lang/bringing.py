@@ -176,13 +176,16 @@ def check_brings(definition: DefinitionBase, at: Span, catalog: CatalogLike, rep
         report.error("VDS145", at, label=f"`{name}` is nothing one holds")
 
 
-def check_someone(definition: DefinitionBase, at: Span, catalog: CatalogLike, report: Report) -> None:
-    """Report an action that is no action where it is done to somebody; ``at``: where it says so."""
-    name: str = getattr(definition, "someone", "")
+def check_others(definition: DefinitionBase, catalog: CatalogLike, report: Report) -> None:
+    """Report an action that says it is another one, which there is not, where it is done to somebody, or to
+    nobody."""
     known = catalog.names("action")
-    if name not in known:
-        meant = nearest(name, known)
-        report.error("VDS071", at, label=f"no action is called `{name}`", suggestion=meant, fix=meant)
+    said: tuple[tuple[str, Span], ...] = getattr(definition, "others_at", ())
+    for entry, at in said:
+        name: str = getattr(definition, entry)
+        if name not in known:
+            meant = nearest(name, known)
+            report.error("VDS071", at, label=f"no action is called `{name}`", suggestion=meant, fix=meant)
 
 
 def _kind_of(path: tuple[str, ...], scope: Scope) -> str | None:

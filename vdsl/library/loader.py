@@ -66,8 +66,8 @@ class Catalog:
             import_module("vdsl.lang.definitions.set").check_set(definition, self, self.report)
         if kind == "action" and (at := getattr(definition, "brings_at", None)) is not None:
             import_module("vdsl.lang.bringing").check_brings(definition, at, self, self.report)
-        if kind == "action" and (at := getattr(definition, "someone_at", None)) is not None:
-            import_module("vdsl.lang.bringing").check_someone(definition, at, self, self.report)
+        if kind == "action" and definition is not None:
+            import_module("vdsl.lang.bringing").check_others(definition, self, self.report)
 
     def names(self, kind: str) -> tuple[str, ...]:
         """All names of a kind: own ones first, then the library's, each in order of the alphabet."""

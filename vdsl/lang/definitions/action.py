@@ -21,7 +21,7 @@ from .types import DefinitionBase
 TARGET_KINDS = ("place", "object", "character")
 SETTINGS = ("target", "second", "duration", "travel", "stride", "cadence", "gait", "sit", "posture", "needs",
             "faces", "turn", "apart", "against", "along", "mutual", "hold", "feeling", "group", "example",
-            "also", "partner", "variant", "brings", "someone")  # fmt: skip
+            "also", "partner", "variant", "brings", "someone", "alone")  # fmt: skip
 CHANGES = ("amplitude", "tempo", "mirror", "duration", "stride", "cadence", "gait", "instead", "partner")
 TRAVELS = ("none", "walk", "run", "skip", "crawl")
 #: Which drawer of the library an action lies in.
@@ -80,7 +80,8 @@ class ActionDef(DefinitionBase):
     anything: a name that the scene has not is taken for what it is done with there: `cook dinner`
     brings: the prop that whoever does it has about them and takes out where the line names nothing to do it
         with, "" for none; unless_held: not where anything is in a hand already
-    someone: the action that it is where it is done to somebody, "" for none: `push ben`
+    someone: the action that it is where it is done to somebody, "" for none: `push ben`; alone: where it is
+        done to nobody and nothing: `stop`
     """
 
     target: str
@@ -112,7 +113,8 @@ class ActionDef(DefinitionBase):
     brings: str = ""
     unless_held: bool = False
     someone: str = ""
-    someone_at: Span | None = field(default=None, compare=False, repr=False)
+    alone: str = ""
+    others_at: tuple[tuple[str, Span], ...] = field(default=(), compare=False, repr=False)
     brings_at: Span | None = field(default=None, compare=False, repr=False)
 
 
@@ -196,7 +198,8 @@ def _settings(
         else None,
         unless_held=settings["brings"].word("unless", "", ("held",)) != "" if "brings" in settings else False,
         someone=settings["someone"].value_word(0, "") if "someone" in settings else "",
-        someone_at=settings["someone"].entry.span if "someone" in settings else None,
+        alone=settings["alone"].value_word(0, "") if "alone" in settings else "",
+        others_at=tuple((n, settings[n].entry.span) for n in ("someone", "alone") if n in settings),
     )  # fmt: skip
 
 

@@ -13,6 +13,7 @@ import torch
 from torch import Tensor, nn
 
 from .composed import COMPOSED, EYES_INSIDE, SUMMED, WINDOWED, composed, over_time, over_window
+from .framed import FRAMED, framed
 from .guides import CHANNELS, FLOW, MARKS, SIDE, Guides, pairs
 from .people import PEOPLED, SUMMED_UP, people_of
 
@@ -156,7 +157,7 @@ class GuideNet(nn.Module):
         self.window: Window | None = None
         if meant:
             self.window = Window(self.frame, _MOVED + _PACES)
-            self.shot += WINDOWED * self.frame
+            self.shot += WINDOWED * self.frame + FRAMED
 
     @torch.no_grad()
     def fit(self, seen: Guided, good: Tensor) -> None:
@@ -190,10 +191,9 @@ class GuideNet(nn.Module):
             if self.window is None:
                 return Description(frames, shot, shot[:, :0])
             meant = self.window(frames, goes, seen.times)
-            windowed = over_window(
-                frames, meant.detach().sigmoid()
-            )  # who judges is not to say what was meant
-            return Description(frames, torch.cat([shot, windowed], 1), meant)
+            asked = meant.detach().sigmoid()  # who judges is not to say what was meant
+            windowed = over_window(frames, asked)
+            return Description(frames, torch.cat([shot, windowed, framed(seen.marks, asked)], 1), meant)
 
 
 def _paces(seen: Guided) -> Tensor:

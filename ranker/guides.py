@@ -63,12 +63,13 @@ SUBJECT_MARKS = (
 #: right, and the cosine between it and the way to the camera; how far the eyes are away (log metres); and 1
 #: where the shot is about them, 0 where not. Then how fast the camera goes, turns, and how unevenly it goes
 #: at most between half the way from the judged frame before and half the way to the next: square roots of
-#: metres a second, of radians a second, and of metres by the third power of a second. And how far it is to
-#: the nearest thing, drawn wall or person, in metres, at most 1.
+#: metres a second, of radians a second, and of metres by the third power of a second. How far it is to the
+#: nearest thing, drawn wall or person, in metres, at most 1. And for which share of that time the hands of
+#: who acts are higher than hands that hang.
 PEOPLE_MARKS = (
     *(f"{what}{point}" for point in ALL_POINTS[len(POINTS) :] for what in ("right_", "up_", "covered_")),
     *(f"{what}_{k + 1}" for k in range(PEOPLE) for what in ("right_face", "turned", "distance", "about")),
-    *("pace", "turning", "jerk", "room"),
+    *("pace", "turning", "jerk", "room", "work_l", "work_r"),
 )
 #: All marks of a frame. In the mirror those of ``right`` change their sign.
 MARKS = (*SUBJECT_MARKS, *PEOPLE_MARKS)

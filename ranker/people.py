@@ -15,7 +15,7 @@ from .guides import PEOPLE, PEOPLE_MARKS, PERSON_POINTS, SUBJECT_MARKS
 
 _AWAY = 1.0  # log metres, about which distances lie
 _HEAD, _TRUNK = ("crown", "eyes"), ("pocket", "waist")
-_CAMERA = ("pace", "turning", "jerk", "room")
+_CAMERA = ("pace", "turning", "jerk", "room", "work_l", "work_r")
 _OWN = len(PEOPLE_MARKS) - len(_CAMERA)  # marks of people as they are
 _EACH = (
     2 * len(PERSON_POINTS) + 7

@@ -15,6 +15,7 @@ from torch import Tensor
 from .composed import SUMMED, WINDOWED
 from .config import ModelConfig
 from .errors import RankerError
+from .framed import FRAMED
 from .guided import GuideNet, People
 from .model import ShotRanker
 from .weights import load_tensors
@@ -65,13 +66,14 @@ def _columns(guided: GuideNet, own: ModelConfig, config: ModelConfig) -> dict[st
     guided: that part of a network whose config is ``own``
     """
     frame = guided.frame + (config.people - own.people) * People.described
-    window = WINDOWED if own.meant else 0
-    rest = guided.shot - (SUMMED + window) * guided.frame
+    window = WINDOWED * guided.frame + FRAMED if own.meant else 0
+    rest = guided.shot - SUMMED * guided.frame - window
     described = [("frame", 0, i) for i in range(frame)]
     shot = [("summed", k, i) for k in range(SUMMED) for i in range(frame)]
     shot += [("moved", 0, i) for i in range(rest)]
     if config.meant:
         shot += [("meant", k, i) for k in range(WINDOWED) for i in range(frame)]
+        shot += [("framed", 0, i) for i in range(FRAMED)]
     found = {"gathered.0.weight": shot, "straight.weight": shot, "marker_guided.weight": described}
     if guided.window is not None:
         more = guided.window.frame.in_features - guided.frame

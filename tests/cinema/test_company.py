@@ -12,7 +12,7 @@ from vdsl.cinema.flaws import flaws
 from vdsl.cinema.measures import measure
 from vdsl.cinema.sizes import size_of
 from vdsl.cinema.subject import peopled, place
-from vdsl.cinema.takes import Takes
+from vdsl.cinema.takes import SAMPLES, Takes
 from vdsl.cinema.track import CameraTrack, look_at_rotation
 from vdsl.propose.cameras import Filming, propose_cameras
 from vdsl.propose.subjects import performed, subject_of
@@ -36,7 +36,7 @@ def takes_of(
 ) -> Takes:
     at, to = (np.tile(p, (1, FRAMES, 1)).astype(float) for p in (eye, aim))
     track = CameraTrack(at, look_at_rotation(at, to, 0.0), np.full((1, FRAMES), 35.0), to, (36.0, 20.25))
-    window, key = np.ones((1, 10), bool), np.zeros(1, np.int64)
+    window, key = np.ones((1, SAMPLES), bool), np.zeros(1, np.int64)
     return Takes(track, (size_of(kind, scale),), window, key, 0.0, False, ())
 
 

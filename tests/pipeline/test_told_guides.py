@@ -10,6 +10,8 @@ from proposed_shots import proposed
 
 from ranker.guides import CHANNELS, FLOW, MARKS, SIDE, pairs
 from runtime.body.skeleton import JOINT
+from vdsl.cinema.gestures import at_work
+from vdsl.cinema.takes import samples
 from vdsl.cinema.track import CameraTrack, camera_axes, look_at_rotation, project
 from vdsl.pipeline.acts import Act
 from vdsl.pipeline.filming import SEGMENTS, Camerawork, segment_frames
@@ -207,6 +209,37 @@ def test_how_much_room_a_camera_has_is_told(camerawork: Camerawork) -> None:
     assert (
         close.guides.marks[0, :, MARKS.index("room")].max() < 0.45
     )  # half a metre from the middle of his head
+
+
+def test_hands_at_work_are_told_of_and_are_those_of_who_acts(camerawork: Camerawork) -> None:
+    act, grid = filmed("static medium eye-level two-shot")
+    shot, camera = act.line.shots[0], grid.cameras[0]
+    story = next(s for s in grid.story if s.index == camera.story)
+    at = segment_frames(story.frames)
+    anna = subject_of(shot, story, act.filming).members[0]
+    about = about_of(shot, grid, act.filming, act.staged)
+    seen = camerawork.judge_frames(act.staged, "board", grid.story, (camera,), about=[about])
+    assert seen.guides is not None
+    told = {name: seen.guides.marks[0, :, k].astype(float) for k, name in enumerate(MARKS)}
+    works = at_work(anna, np.arange(story.frames)).mean(axis=0)
+    shares = np.array([told["work_l"].mean(), told["work_r"].mean()])
+    assert np.abs(shares - works).max() < 0.15
+    assert max(shares) > 0.3  # the hand that waves
+    assert min(shares) == 0.0  # the other one hangs
+    for side in "lr":
+        xy, _ = project(
+            anna.landmarks[f"hand_{side}"][at][:, None],
+            camera.track.position[at],
+            camera_axes(camera.track.rotation[at]),
+            camera.track.focal[at],
+            camera.track.sensor,
+        )
+        np.testing.assert_allclose(told[f"right_hand_{side}"], np.clip(2 * xy[:, 0, 0] - 1, -3, 3), atol=3e-3)
+
+
+@pytest.mark.parametrize("frames", [8, 9, 30, 97, 240])
+def test_what_is_measured_are_the_frames_that_the_ranker_is_shown(frames: int) -> None:
+    np.testing.assert_array_equal(samples(frames), segment_frames(frames))
 
 
 def test_people_are_told_of_one_by_one(camerawork: Camerawork) -> None:

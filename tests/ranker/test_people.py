@@ -68,6 +68,6 @@ def test_who_lost_a_head_is_known_and_who_is_out_of_the_picture_lost_none() -> N
 
 
 def test_how_the_camera_goes_comes_last() -> None:
-    told = marks_of(pace=0.5, turning=0.25, jerk=2.0, room=0.75)
-    assert people_of(told)[0, 0, -4:].tolist() == [0.5, 0.25, 2.0, 0.75]
-    assert PEOPLE_MARKS[-4:] == ("pace", "turning", "jerk", "room")
+    told = marks_of(pace=0.5, turning=0.25, jerk=2.0, room=0.75, work_l=1.0, work_r=0.0)
+    assert people_of(told)[0, 0, -6:].tolist() == [0.5, 0.25, 2.0, 0.75, 1.0, 0.0]
+    assert PEOPLE_MARKS[-6:] == ("pace", "turning", "jerk", "room", "work_l", "work_r")

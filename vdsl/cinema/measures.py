@@ -1,7 +1,7 @@
 """Measures of takes from the geometry: per frame first, then one number a take; P takes of one
 performance at once.
 
-Frames are sampled (ten a take, first and last among them) where sight and space are concerned; motion is
+Frames are sampled (eight a take, first and last among them) where sight and space are concerned; motion is
 measured on all. A take that turns or moves onto its subject, or off it, is judged on the part of its
 time in which the subject is meant to be there: the window.
 """

@@ -18,7 +18,8 @@ from .vectors import dot, length
 
 Bools = NDArray[np.bool_]
 
-SAMPLES = 10
+#: Frames of a take that are looked at, at most: as many as the ranker is shown, and the same ones.
+SAMPLES = 8
 
 
 @dataclass(frozen=True, eq=False)

@@ -42,7 +42,7 @@ from .labels import WORDS
 from .progress import Progress, Silence
 
 #: Raised when other takes or labels come of the same seed.
-_RECIPE = 25
+_RECIPE = 26
 _PROPOSALS = 16
 _DRAWN_AT_ONCE = 64
 _SHARD = 64

@@ -81,11 +81,12 @@ class Camerawork:
         whole = [subject.places[c.story] for c, subject in zip(cameras, about, strict=True)]
         judged = [segment_frames(len(p.points)) for p in whole]
         places = [p.at(frames[list(which)]) for p, frames in zip(whole, judged, strict=True)]
-        paces = np.concatenate(
-            [
-                paces_of(c.track, frames, p.seconds)[list(which)]
-                for c, p, frames in zip(cameras, whole, judged, strict=True)
-            ]
+        paces, works = (
+            np.concatenate([told[list(which)] for told in of_shots])
+            for of_shots in (
+                [paces_of(c.track, f, p.seconds) for c, p, f in zip(cameras, whole, judged, strict=True)],
+                [p.works_about(frames) for p, frames in zip(whole, judged, strict=True)],
+            )
         )
         roles = np.repeat(roles_of(staged, about), len(which), axis=0)
         at = pointed(views.camera, places, size)
@@ -96,7 +97,7 @@ class Camerawork:
         opened = [bool(c.hidden_walls.any()) for c in cameras]
         hidden = np.stack([c.hidden_walls for c in cameras])
         room = room_of(staged.world.solids, views.camera.position, hidden, places)
-        gone = np.column_stack([paces, room])
+        gone = np.column_stack([paces, room, works])
         told = guides_of(drawn.guides, drawn.probed, at, views.camera, places, opened, gone, which, SEGMENTS)
         return Seen(frames, told)
 

@@ -31,6 +31,7 @@ from ranker.guides import NEAREST as NEAREST_TOLD
 from runtime.raster.types import FAR, GUIDE_SIDE, NEAREST, OTHERS, SUBJECT, Camera, Probed
 from runtime.world import Solids
 
+from ..cinema.gestures import at_work
 from ..cinema.space import REACH, clearance, nearby, to_people
 from ..cinema.track import CameraTrack, project
 from ..lang.ir import Shot
@@ -51,6 +52,7 @@ class Places:
     points: float32 [T, len(ALL_POINTS), 3], NaN where there is no such point; face: [T, 3], its direction
     faces: [T, PEOPLE, 3], those of the people who are told of one by one, NaN where there is none
     meant: [PEOPLE], 1 where the camera is about them, 0 where not
+    works: [T, 2], 1 where the left hand, or the right one, of who acts is at work, 0 where it hangs
     others: everybody but the subject, as pillars: foot and crown [T, 3], and radius
     seconds: how long the performance is
     """
@@ -59,6 +61,7 @@ class Places:
     face: NDArray[np.float32]
     faces: NDArray[np.float32]
     meant: NDArray[np.float32]
+    works: NDArray[np.float32]
     others: tuple[tuple[NDArray[np.float64], NDArray[np.float64], float], ...]
     seconds: float
 
@@ -68,6 +71,11 @@ class Places:
         points, face, faces = (told[frames] for told in (self.points, self.face, self.faces))
         return replace(self, points=points, face=face, faces=faces, others=others)
 
+    def works_about(self, frames: NDArray[np.integer]) -> NDArray[np.float64]:
+        """For which share of the time about each of some frames the left and the right hand are at work:
+        [k, 2]."""
+        return np.array([self.works[a:b].mean(axis=0, dtype=float) for a, b in about(frames)])
+
 
 @dataclass(frozen=True, eq=False)
 class About:
@@ -75,6 +83,14 @@ class About:
 
     objects: tuple[int, ...]
     places: dict[int, Places]
+
+
+def about(at: NDArray[np.integer]) -> list[tuple[int, int]]:
+    """The frames about each of some [k], from half the way from the one before to half the way to the next:
+    where they begin, and the first no more of them."""
+    halves = (at[1:] + at[:-1]) // 2
+    begins, ends = np.concatenate([at[:1], halves]), np.concatenate([halves, at[-1:]])
+    return [(int(begin), int(max(end, begin + 1))) for begin, end in zip(begins, ends, strict=True)]
 
 
 def about_of(shot: Shot, grid: ProposalGrid, filming: Filming, staged: StagedScene) -> About:
@@ -86,6 +102,12 @@ def about_of(shot: Shot, grid: ProposalGrid, filming: Filming, staged: StagedSce
         for k, name in enumerate(POINTS):
             if name in subject.landmarks:
                 points[:, k] = subject.landmarks[name]
+        acts = subject.members[0] if subject.members else subject
+        for name in ("hand_l", "hand_r"):  # halfway between those of several people there is no hand
+            points[:, POINTS.index(name)] = acts.landmarks[name]
+        works = np.zeros((story.frames, 2), np.float32)
+        if acts.kind == "person":
+            works[:] = at_work(acts, np.arange(story.frames))
         for name, path in zip(("other_1", "other_2"), story.interest, strict=False):
             points[:, POINTS.index(name)] = path
         faces, meant = np.full((story.frames, PEOPLE, 3), np.nan, np.float32), np.zeros(PEOPLE, np.float32)
@@ -97,7 +119,7 @@ def about_of(shot: Shot, grid: ProposalGrid, filming: Filming, staged: StagedSce
             faces[:, k], meant[k] = one.face, float(k < len(own))
         face = subject.face.astype(np.float32)
         company = tuple(company_of(shot, story, filming, subject))
-        places[story.index] = Places(points, face, faces, meant, company, story.frames / filming.fps)
+        places[story.index] = Places(points, face, faces, meant, works, company, story.frames / filming.fps)
     return About(_objects_of(shot, grid, filming, staged), places)
 
 
@@ -177,7 +199,8 @@ def guides_of(
 
     drawn: uint8 [P k, SIDE, SIDE, 6] of the renderer; probed: [P k, points], what it saw ``at`` the points
     camera: of these P k pictures; places: [P] in these k frames; opened: [P], whether walls are left out
-    gone: [P k, 4], how the camera goes as :func:`paces_of` tells it, and its :func:`room_of`
+    gone: [P k, 6], how the camera goes as :func:`paces_of` tells it, its :func:`room_of`, and which hands
+        work meanwhile
     which: the k frames they are, of ``whole``
     """
     shots = len(places)
@@ -197,7 +220,7 @@ def guides_of(
 def paces_of(track: CameraTrack, at: NDArray[np.integer], seconds: float) -> NDArray[np.float64]:
     """How fast a camera goes, turns, and how unevenly it goes, about each of the frames ``at``: [k, 3].
 
-    At most between half the way from the frame before and half the way to the next, as ``PEOPLE_MARKS`` says.
+    At most of the frames :func:`about` each, as ``PEOPLE_MARKS`` says.
     """
     frames = len(track.position)
     fps = frames / seconds
@@ -206,12 +229,10 @@ def paces_of(track: CameraTrack, at: NDArray[np.integer], seconds: float) -> NDA
     turn *= fps
     turning = np.hypot(turn[:, 1], turn[:, 2] * np.cos(track.rotation[:-1, 1]))
     jerk = np.linalg.norm(np.diff(track.position, 3, axis=0), axis=1) * fps**3
-    halves = (at[1:] + at[:-1]) // 2
-    begins, ends = np.concatenate([at[:1], halves]), np.concatenate([halves, at[-1:]])
     out = np.zeros((len(at), 3))
     for k, values in enumerate((step, turning, jerk)):
-        for n, (begin, end) in enumerate(zip(begins, ends, strict=True)):
-            some = values[begin : max(end, begin + 1)]
+        for n, (begin, end) in enumerate(about(at)):
+            some = values[begin:end]
             out[n, k] = np.sqrt(some.max()) if len(some) else 0.0
     return out
 

@@ -14,7 +14,7 @@ from ..cinema.subject import Subject
 from ..cinema.takes import samples
 from ..cinema.track import camera_axes, project
 from ..propose.types import CameraProposal
-from .designer import qualities
+from .designer import appeal, qualities
 
 #: Measures that are heavy-tailed: their square root is taught.
 _LONG = ("jerk", "speed", "angular_speed")
@@ -27,8 +27,9 @@ _POINTS, _FAR = ("crown", "eyes", "chin", "waist", "feet"), 3.0
 
 
 def hints_of(camera: CameraProposal) -> dict[str, float]:
-    """Measures, which of them are faults, how good it is by each of the designer's criteria, and the camera's
-    own motion, by name; names that begin with ``right`` change their sign in a mirrored picture.
+    """Measures, which of them are faults, how good it is by each of the designer's criteria and by all of
+    them, and the camera's own motion, by name; names that begin with ``right`` change their sign in a
+    mirrored picture.
 
     Motion is from the first frame to the last: turns in radians, ways as a share of the distance to what is
     aimed at, in the camera's first axes.
@@ -36,8 +37,8 @@ def hints_of(camera: CameraProposal) -> dict[str, float]:
     track = camera.track
     found = {k: float(v) for k, v in camera.measures.items() if k not in _UNTAUGHT}
     found |= {f"fault_{k}": float(v) for k, v in flaws_by_measure(camera.measures).items()}
-    good = qualities(camera.measures).items()
-    found |= {f"good_{k}": float(np.log(np.maximum(v, _WORST))) for k, v in good}
+    good = qualities(camera.measures) | {"all": appeal(camera.measures)}
+    found |= {f"good_{k}": float(np.log(np.maximum(v, _WORST))) for k, v in good.items()}
     found |= {k: max(found[k], 0.0) ** 0.5 for k in _LONG if k in found}
     distance = np.maximum(np.linalg.norm(track.look_at - track.position, axis=-1), 0.2)
     way = camera_axes(track.rotation[0]) @ (track.position[-1] - track.position[0]) / distance[0]

@@ -7,6 +7,8 @@ about the size of 1 that are known for any marks.
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
+from typing import NamedTuple
 
 import torch
 from torch import Tensor
@@ -27,9 +29,9 @@ _NEARER = (0.3, math.log(2), 1.1)
 #: Where sizes put what is to be at the top: a point, and how high above the middle, half frames.
 _TOPS = (("top", 0.82), ("top", 0.46), ("top", 0.08), ("crown", 0.84), ("eyes", 0.4))
 #: Points of a body by which one says how much of it is seen.
-_BODY = [POINTS.index(p) for p in ("eyes", "chin", "pocket", "waist", "hand_l", "hand_r", "knees")]
-_HANDS = [POINTS.index(p) for p in ("hand_l", "hand_r")]
-_OTHERS = [POINTS.index(p) for p in ("other_1", "other_2")]
+BODY = [POINTS.index(p) for p in ("eyes", "chin", "pocket", "waist", "hand_l", "hand_r", "knees")]
+HANDS = [POINTS.index(p) for p in ("hand_l", "hand_r")]
+OTHERS = [POINTS.index(p) for p in ("other_1", "other_2")]
 
 #: Numbers of :func:`composed` of a frame: marks, which points there are, composition, looks, what is seen,
 #: and of each point whether it is covered, and whether it is in the frame.
@@ -55,13 +57,7 @@ def composed(told: Tensor, nearness: Tensor) -> Tensor:
     names = SUBJECT_MARKS
     marks = dict(zip(names, told[..., : len(names)].unbind(-1), strict=True))
     common = [(marks[n] - _COMMON[n][0]) / _COMMON[n][1] if n in _COMMON else marks[n] for n in names]
-    right, up, nearer = (
-        torch.stack([marks[f"{what}_{point}"] for point in POINTS], -1) for what in ("right", "up", "covered")
-    )
-    there = right.isfinite()
-    right, up = right.nan_to_num(3.0), up.nan_to_num(3.0)
-    inside = in_frame(right, up) * there
-    covered = hidden(nearer, marks["distance"].unsqueeze(-1)) * inside
+    right, up, there, inside, covered = placed(marks)
     own = (1 - (-marks["before_eyes"].nan_to_num(-1.0)).exp()) * marks["distance"].exp()
     at = dict(zip(POINTS, up.unbind(-1), strict=True))
     eyes = POINTS.index("eyes")
@@ -86,6 +82,32 @@ def composed(told: Tensor, nearness: Tensor) -> Tensor:
     return torch.cat([*parts, looks, share, _seen(inside, covered), covered, inside], -1)
 
 
+class Placed(NamedTuple):
+    """Where the points of a subject are in frames, [B, T, points] each.
+
+    right, up: half frames from the middle, 3 for what there is not; there: whether there is such a point
+    inside: whether it is in the frame, covered: and something is before it, 0..1
+    """
+
+    right: Tensor
+    up: Tensor
+    there: Tensor
+    inside: Tensor
+    covered: Tensor
+
+
+def placed(marks: Mapping[str, Tensor]) -> Placed:
+    """Where the subject's points are, by the marks of frames by their names, [B, T] each."""
+    right, up, nearer = (
+        torch.stack([marks[f"{what}_{point}"] for point in POINTS], -1) for what in ("right", "up", "covered")
+    )
+    there = right.isfinite()
+    right, up = right.nan_to_num(3.0), up.nan_to_num(3.0)
+    inside = in_frame(right, up) * there
+    covered = hidden(nearer, marks["distance"].nan_to_num(0.0).unsqueeze(-1)) * inside
+    return Placed(right, up, there, inside, covered)
+
+
 def in_frame(right: Tensor, up: Tensor) -> Tensor:
     """Whether points are in the frame, 0..1, of their places in half frames from its middle."""
     return torch.sigmoid(_SHARP * (1 - right.abs())) * torch.sigmoid(_SHARP * (1 - up.abs()))
@@ -105,10 +127,10 @@ def _seen(inside: Tensor, covered: Tensor) -> Tensor:
     the eyes; head and middle in the frame, and all of the head; a hand at least; of the others the most; and
     whether there is nobody at all."""
     clear = inside - covered
-    body, there = clear[..., _BODY].sum(-1), inside[..., _BODY].sum(-1)
+    body, there = clear[..., BODY].sum(-1), inside[..., BODY].sum(-1)
     eyes, chin, waist = (inside[..., POINTS.index(p)] for p in ("eyes", "chin", "waist"))
-    hands, others = clear[..., _HANDS].amax(-1), clear[..., _OTHERS].amax(-1)
-    somebody = torch.stack([clear[..., _BODY].amax(-1), eyes, others], -1).amax(-1)
+    hands, others = clear[..., HANDS].amax(-1), clear[..., OTHERS].amax(-1)
+    somebody = torch.stack([clear[..., BODY].amax(-1), eyes, others], -1).amax(-1)
     told = (body / there.clamp_min(0.5), clear[..., POINTS.index("eyes")], eyes * waist, eyes * chin)
     return torch.stack([*told, hands, others, 1 - somebody], -1)
 

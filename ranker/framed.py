@@ -11,7 +11,7 @@ from __future__ import annotations
 import torch
 from torch import Tensor
 
-from .composed import hidden, in_frame
+from .composed import BODY, HANDS, OTHERS, placed
 from .guides import MARKS, PEOPLE, POINTS
 
 #: Lines that sizes put a point at the top on, from the frame's top as a share of its height; points between
@@ -27,9 +27,6 @@ _LINES = (
 )
 #: What is at the bottom of a size, for those who lie or are seen from above: the middle is where they belong.
 _BOTTOMS = ("chin", "pocket", "waist", "thigh", "knees", "feet")
-_BODY = [POINTS.index(p) for p in ("eyes", "chin", "pocket", "waist", "hand_l", "hand_r", "knees")]
-_OTHERS = [POINTS.index(p) for p in ("other_1", "other_2")]
-_HANDS = [POINTS.index(p) for p in ("hand_l", "hand_r")]
 _WORK = [MARKS.index(f"work_{side}") for side in "lr"]
 #: Millimetres of half a sensor of 16 to 9, to the right and to the top.
 _SENSOR = (18.0, 10.125)
@@ -71,23 +68,18 @@ def _frames(told: Tensor) -> Tensor:
     their lines, how the face is turned and what room it has, and how much is seen of what is in the frame.
     """
     marks = dict(zip(MARKS, told.unbind(-1), strict=True))
-    right, up, nearer = (
-        torch.stack([marks[f"{what}_{point}"] for point in POINTS], -1) for what in ("right", "up", "covered")
-    )
-    there = right.isfinite()
-    right, up = right.nan_to_num(3.0), up.nan_to_num(3.0)
-    inside = in_frame(right, up) * there
-    clear = inside - hidden(nearer, marks["distance"].nan_to_num(0.0).unsqueeze(-1)) * inside
+    right, up, there, inside, covered = placed(marks)
+    clear = inside - covered
     at = dict(zip(POINTS, up.unbind(-1), strict=True))
     x, y = (side[..., POINTS.index("eyes")] for side in (right, up))
     size = marks["size"].nan_to_num(0.0)
-    others = there[..., _OTHERS].float()
-    share = (clear[..., _OTHERS].sum(-1) + (others.sum(-1) == 0)) / others.sum(-1).clamp_min(1)
+    others = there[..., OTHERS].float()
+    share = (clear[..., OTHERS].sum(-1) + (others.sum(-1) == 0)) / others.sum(-1).clamp_min(1)
     work = told[..., _WORK].nan_to_num(0.0)
     metres = torch.stack([right * _SENSOR[0], up * _SENSOR[1]], -1) / size.exp()[..., None, None]
     waist, chin = (metres[..., POINTS.index(p), :] for p in ("waist", "chin"))
-    beside = torch.stack([_off(metres[..., k, :], waist, chin) for k in _HANDS], -1)
-    plain = ((beside - _WITHIN) / (_PLAIN - _WITHIN)).clamp(0, 1) * clear[..., _HANDS]
+    beside = torch.stack([_off(metres[..., k, :], waist, chin) for k in HANDS], -1)
+    plain = ((beside - _WITHIN) / (_PLAIN - _WITHIN)).clamp(0, 1) * clear[..., HANDS]
     asked = work.amax(-1)
     lost = asked * (1 - (plain * (work > 0)).amax(-1))
     lines = []
@@ -96,7 +88,7 @@ def _frames(told: Tensor) -> Tensor:
         lines.append(((1 - high) / 2 - line).abs())
     flat = [((at["top"] + at[point]) / 4).abs() for point in _BOTTOMS]
     turned = _turned(marks, x, y)
-    seen = clear[..., _BODY].sum(-1) / inside[..., _BODY].sum(-1).clamp_min(0.5)
+    seen = clear[..., BODY].sum(-1) / inside[..., BODY].sum(-1).clamp_min(0.5)
     eyes, chest = inside[..., POINTS.index("eyes")], inside[..., POINTS.index("waist")]
     room = -marks["right_face"].nan_to_num(0.0) * x
     parts = [share, asked, lost, size - 3.2]

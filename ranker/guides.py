@@ -22,7 +22,8 @@ CHANNELS = ("subject", "head", "face", "others", "nothing", "nearness", "rise")
 FLOW = 8  # cells along a field of the camera's motion
 _APART = 3  # frames between those of the longer pairs
 NEAREST, FARTHEST = 0.25, 64.0  # metres that nearness of 255 and of 1 stand for
-#: Points that marks are of: the subject's, and two of what else matters, as who is spoken to.
+#: Points that marks are of: the subject's, of several people those halfway between them but for the hands,
+#: which are of who acts, and two of what else matters, as who is spoken to.
 POINTS = (
     "top",
     "crown",

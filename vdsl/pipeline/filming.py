@@ -12,14 +12,15 @@ from ranker.guides import Guides
 from runtime.raster.renderer import Renderer
 from runtime.raster.types import STYLES, Camera, Frames, Views
 
+from ..cinema.takes import SAMPLES
 from ..cinema.track import CameraTrack, camera_axes
 from ..propose.types import CameraProposal, StoryProposal
 from ..stage.assemble import StagedScene, palettes
 from .guides import About, guides_of, paces_of, pointed, roles_of, room_of
 from .shutter import between, camera_between, exposed_frames, moments_needed
 
-#: The discriminator looks at this many frames of this size (the paper's section 3.3).
-SEGMENTS = 8
+#: The discriminator looks at this many frames of this size (the paper's section 3.3): the measured ones.
+SEGMENTS = SAMPLES
 JUDGE_SIZE = (224, 224)
 #: Full frames drawn in one launch: enough to keep every core busy, few enough to stay small.
 _FRAMES_A_LAUNCH = 12

@@ -74,7 +74,7 @@ class Places:
     def works_about(self, frames: NDArray[np.integer]) -> NDArray[np.float64]:
         """For which share of the time about each of some frames the left and the right hand are at work:
         [k, 2]."""
-        return np.array([self.works[a:b].mean(axis=0, dtype=float) for a, b in about(frames)])
+        return np.array([self.works[a:b].mean(axis=0, dtype=float) for a, b in spans(frames)])
 
 
 @dataclass(frozen=True, eq=False)
@@ -85,7 +85,7 @@ class About:
     places: dict[int, Places]
 
 
-def about(at: NDArray[np.integer]) -> list[tuple[int, int]]:
+def spans(at: NDArray[np.integer]) -> list[tuple[int, int]]:
     """The frames about each of some [k], from half the way from the one before to half the way to the next:
     where they begin, and the first no more of them."""
     halves = (at[1:] + at[:-1]) // 2
@@ -220,7 +220,7 @@ def guides_of(
 def paces_of(track: CameraTrack, at: NDArray[np.integer], seconds: float) -> NDArray[np.float64]:
     """How fast a camera goes, turns, and how unevenly it goes, about each of the frames ``at``: [k, 3].
 
-    At most of the frames :func:`about` each, as ``PEOPLE_MARKS`` says.
+    At most of the frames :func:`spans` of each, as ``PEOPLE_MARKS`` says.
     """
     frames = len(track.position)
     fps = frames / seconds
@@ -231,7 +231,7 @@ def paces_of(track: CameraTrack, at: NDArray[np.integer], seconds: float) -> NDA
     jerk = np.linalg.norm(np.diff(track.position, 3, axis=0), axis=1) * fps**3
     out = np.zeros((len(at), 3))
     for k, values in enumerate((step, turning, jerk)):
-        for n, (begin, end) in enumerate(about(at)):
+        for n, (begin, end) in enumerate(spans(at)):
             some = values[begin:end]
             out[n, k] = np.sqrt(some.max()) if len(some) else 0.0
     return out

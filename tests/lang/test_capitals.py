@@ -94,14 +94,14 @@ def test_an_unknown_name_is_still_told_with_how_to_add_it() -> None:
 @pytest.mark.parametrize(
     ("line", "expected"),
     [
-        ("(anna stops. She turns around… and smiles!)", ["stop", "turn", "smile"]),
+        ("(anna stops. She turns around… and smiles!)", ["wait", "turn", "smile"]),
         ("(anna sits down; she sighs)", ["sit", "sigh"]),
         ("(anna walks in — slowly)", ["enter"]),
         ("(anna takes the cup - and drinks)", ["pick-up", "drink"]),
         ("(anna picks up 3 cups)", ["pick-up"]),
         ("(Anna waits for 3 seconds)", ["wait"]),
         ("(Anna – slowly – opens the fridge)", ["open"]),
-        ("(She stops. Turns. Silence.)", ["stop", "turn"]),
+        ("(She stops. Turns. Silence.)", ["wait", "turn"]),
         ("(Footsteps; anna ducks)", ["duck"]),
     ],
 )

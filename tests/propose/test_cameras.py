@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import replace
 
 import numpy as np
@@ -10,8 +11,11 @@ from filmset import shot, skeleton, standing, still_story, story, thing, walking
 
 from runtime.world import Wall
 from vdsl.cinema.score import geometry_score
+from vdsl.cinema.takes import samples
+from vdsl.cinema.track import camera_axes, project
 from vdsl.propose.cameras import Filming, propose_cameras
 from vdsl.propose.rejection import REASONS
+from vdsl.propose.subjects import subject_of
 from vdsl.propose.types import ProposalGrid
 
 BODY = skeleton()
@@ -165,3 +169,26 @@ def test_an_empty_scene_is_shown_as_a_place() -> None:
     for c in grid.cameras:
         turned = np.degrees(c.track.rotation[-1, 2] - c.track.rotation[0, 2])
         assert 12.0 - 1e-6 <= turned <= 60.0 + 1e-6
+
+
+@pytest.mark.parametrize("movement", ["pan-left", "dolly-right", "tilt-up"])
+def test_whoever_is_well_in_the_frame_at_both_ends_counts_at_both(movement: str) -> None:
+    at = samples(72)
+    both = one = 0
+    for scale, metres in itertools.product(("medium", "full", "wide"), (0.0, 3.0)):
+        walk = walking_story(BODY, metres=metres)
+        line = shot(movement, scale)
+        subject = subject_of(line, walk, filming())
+        for camera in propose_cameras(line, [walk], filming()).cameras:
+            t = camera.track
+            eyes = subject.landmarks["eyes"][at, None]
+            xy, depth = project(eyes, t.position[at], camera_axes(t.rotation[at]), t.focal[at], t.sensor)
+            there = (np.abs(xy[:, 0] - 0.5) < 0.4).all(axis=-1) & (depth[:, 0] > 0)
+            if there[0] and there[-1] and movement != "tilt-up":
+                both += 1
+                assert camera.window[there].all()
+            elif not camera.window.all():
+                one += 1
+                assert camera.window[0] != camera.window[-1]
+    assert one
+    assert bool(both) == (movement != "tilt-up")

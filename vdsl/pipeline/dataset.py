@@ -42,8 +42,10 @@ from .labels import WORDS
 from .progress import Progress, Silence
 
 #: Raised when other takes or labels come of the same seed.
-_RECIPE = 26
-_PROPOSALS = 16
+_RECIPE = 27
+#: Proposals of a shot in most stories, and in every so many-th: of many, more are looked for beside the best
+#: and off the grid, as where ``compile`` looks for a take.
+_PROPOSALS, _MANY, _EVERY = 8, 32, 5
 _DRAWN_AT_ONCE = 64
 _SHARD = 64
 #: Processes at most, and stories that each has waiting: a story's pictures take up to 80 MB.
@@ -208,7 +210,7 @@ def _maker(making: _Making) -> Callable[[int], list[_Filmed]]:
     troupe, camerawork = Troupe(making.seed), Camerawork(making.device)
 
     def film(number: int) -> list[_Filmed]:
-        scenes = troupe.scenes(number, _PROPOSALS)
+        scenes = troupe.scenes(number, _PROPOSALS if number % _EVERY else _MANY)
         return [filmed for scene in scenes if (filmed := _filmed(scene, making, camerawork)) is not None]
 
     return film

@@ -51,11 +51,12 @@ _PLAIN = 1.5  # how many of its kind what has no fault may follow, more than wha
 
 @dataclass(frozen=True, eq=False)
 class _Batch:
-    """Candidates of one story, measured: what was drawn, tracks [P], why each is thrown out, and how grave
-    all its faults together are."""
+    """Candidates of one story, measured: what was drawn, tracks [P], in which sampled frames they are meant
+    to show their subject [P, F], why each is thrown out, and how grave all its faults together are."""
 
     sample: Sample
     shooting: Shooting
+    window: NDArray[np.bool_]
     measured: Measured
     scores: NDArray[np.float64]
     reason: NDArray[np.int64]
@@ -164,7 +165,8 @@ def _consider(
         shooting, values = tried.shooting.only(tried.kept), tried.measured.values
         reason, drawn = tried.reason[tried.kept], sample.only(rows[shooting.order])
         faults = np.sum(list(gravity(values).values()), axis=0)
-        out.append(_Batch(drawn, shooting, tried.measured, geometry_scores(values), reason, faults))
+        scores = geometry_scores(values)
+        out.append(_Batch(drawn, shooting, tried.window, tried.measured, scores, reason, faults))
         rejected.update(REASONS[k] for k in reason[reason >= 0])
     return out
 
@@ -174,13 +176,14 @@ class Tried:
     """Candidates of one story looked at.
 
     reason: [P] index into REASONS, −1 for the good ones; kept: those that have room; measured: those alone,
-    None where there are none
+    None where there are none; window: the sampled frames in which those are meant to show their subject
     """
 
     shooting: Shooting
     reason: NDArray[np.int64]
     kept: NDArray[np.int64]
     measured: Measured | None
+    window: NDArray[np.bool_]
 
 
 def try_cameras(
@@ -201,9 +204,9 @@ def try_cameras(
     reason = no_room(shooting, near, solids, stage, at)
     kept = np.flatnonzero(reason < 0)
     if not len(kept):
-        return Tried(shooting, reason, kept, None)
+        return Tried(shooting, reason, kept, None, np.zeros((0, len(at)), bool))
     left = shooting.only(kept)
-    window = left.window(at, subject.frames)
+    window = left.window(at, subject)
     takes = _takes(shot, subject, left.track, left.scales, window, left.key, story, filming)
     takes = replace(takes, near=near.only(kept))
     measured = measure(takes, subject, filming.world, filming.fps)
@@ -213,7 +216,7 @@ def try_cameras(
         lost = unseen_racks(left, foci, held, solids, measured.hidden, at)
         soft = np.isin(reason[kept], (-1, *SOFT))  # else they might be let back in
         reason[kept[lost & soft]] = REASONS.index("wrong_movement")
-    return Tried(shooting, reason, kept, measured)
+    return Tried(shooting, reason, kept, measured, window)
 
 
 def measured_anew(
@@ -313,7 +316,6 @@ def _choose(batches: Sequence[_Batch], wanted: int) -> list[tuple[int, int]]:
 
 def _proposal(index: int, batch: _Batch, row: int, shot: Shot) -> CameraProposal:
     track = batch.shooting.track
-    frames = track.position.shape[1]
     values = {k: float(v[row]) for k, v in batch.measured.values.items()}
     values["geometry"] = float(batch.scores[row])
     return CameraProposal(
@@ -327,6 +329,6 @@ def _proposal(index: int, batch: _Batch, row: int, shot: Shot) -> CameraProposal
         hidden_walls=batch.measured.hidden[row],
         unseen=shot.whose[0] if shot.view == "pov" and shot.whose else "",
         measures=values,
-        window=batch.shooting.window(samples(frames), frames)[row],
+        window=batch.window[row],
         key=int(batch.shooting.key[row]),
     )

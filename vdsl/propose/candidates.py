@@ -8,11 +8,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..cinema.moves import FLOOR_CLEARANCE, RACK, SIGN, Draw, families, family, of_camera
-from ..cinema.track import CameraTrack
+from ..cinema.subject import Subject
+from ..cinema.takes import within
+from ..cinema.track import CameraTrack, camera_axes, project
 
 Array = NDArray[np.float64]
 
 _TURNED = np.radians(3.0)  # of a tilt that has left where it was
+_LEVEL = frozenset(("pan", "dolly"))  # movements to the side
+_WELL = 0.1  # of the frame from its borders, within which eyes are well in it
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,9 +73,28 @@ class Shooting:
             self.view,
         )
 
-    def window(self, at: NDArray[np.int64], frames: int) -> NDArray[np.bool_]:
-        """bool [P, F]: sampled frames at which the subject is meant to be in the picture."""
-        time = at / max(frames - 1, 1)
+    def window(self, at: NDArray[np.int64], subject: Subject) -> NDArray[np.bool_]:
+        """bool [P, F]: sampled frames at which the subject is meant to be in the picture.
+
+        A camera that turns or goes onto its subject, or off it, is meant to show it at one end. Where it is
+        well in the frame at the other end of a pan or dolly as well, as somebody who goes along with it,
+        nobody who watches can tell which: then all frames count that it is well in. One that goes up or down
+        is known by where the head is.
+        """
+        out = self._meant(at / max(subject.frames - 1, 1), at)
+        level = np.array([bool(families(m) & _LEVEL) for m in self.movements], bool)
+        rows = np.flatnonzero(level & ~out.all(axis=1))
+        if self.rig == "cinema" and len(rows):
+            t = self.track
+            axes = camera_axes(t.rotation[np.ix_(rows, at)])
+            eyes = subject.landmarks["eyes"][None, at, None]
+            camera, focal = t.position[np.ix_(rows, at)], t.focal[np.ix_(rows, at)]
+            there = within(*project(eyes, camera, axes, focal, t.sensor), _WELL)[..., 0]
+            out[rows] |= there & (there[:, :1] & there[:, -1:])
+        return out
+
+    def _meant(self, time: Array, at: NDArray[np.int64]) -> NDArray[np.bool_]:
+        """The same by the movements alone; time: of the frames ``at``, 0..1."""
         out = np.ones((len(self.movements), len(at)), bool)
         for p, movement in enumerate(self.movements):
             kinds = families(movement)

@@ -73,6 +73,14 @@ def test_the_underline_is_under_the_span() -> None:
     assert lines[3] == "  |           ^ the camera stands outside of the parentheses"
 
 
+def test_what_is_said_of_several_lines_is_said_once(script: Path) -> None:
+    script.write_text("scene s = apartment.kitchen\n" + "(anna waves)\n(anna smiles)\n" * 6)
+    result = vdsc("check", script)
+    assert result.stderr.count("no character is called `anna`") == 1
+    assert "the same on lines 3, 4, 5, 6, 7, 8, 9, 10 and 3 more" in result.stderr
+    assert "12 errors" in result.stderr
+
+
 def test_json_has_every_place(script: Path) -> None:
     script.write_text(FIVE)
     document = json.loads(vdsc("check", script, "--format", "json").stdout)

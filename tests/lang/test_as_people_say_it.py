@@ -509,3 +509,21 @@ def test_what_is_no_adverb_and_no_adjective_is_told() -> None:
     ):
         assert acts(line) == [expected], line
     assert acts("(anna and ben join hands)") == [("anna", "hold-hands", "ben")]
+
+
+@pytest.mark.parametrize(
+    ("line", "done"),
+    [
+        ("(anna quickly and quietly opens the door)", ["open"]),
+        ("(anna opens the door slowly and carefully)", ["open"]),
+        ("(anna softly and then loudly sings)", ["sing"]),
+        ("(anna waves slowly but surely at ben)", ["wave"]),
+        ("(anna sits down quietly and slowly reads)", ["sit", "read"]),
+        ("(anna walks quickly and sits down)", ["walk", "sit"]),
+    ],
+)
+def test_and_between_manners_joins_nothing_that_is_done(line: str, done: list[str]) -> None:
+    board, report = read(line)
+    assert board is not None, [d.label for d in report.errors]
+    assert not report.errors
+    assert [each.beats[0].action for each in board.lines] == done

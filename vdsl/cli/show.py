@@ -12,16 +12,17 @@ import json
 import os
 import sys
 import unicodedata
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from typing import TextIO
 
-from ..lang.diagnostics import Diagnostic, Report
+from ..lang.diagnostics import Diagnostic, Report, listing
 from ..lang.source import Span
 from ..pipeline.findings import finding
 
 SCHEMA = "vds.diagnostics/1"
 WIDTH = 116
 MOST_PRINTED = 200
+_MOST_LINES = 8  # that are named where the same is said of several
 _STYLES = {
     "error": "\x1b[1;31m", "warning": "\x1b[1;33m", "note": "\x1b[1;36m", "help": "\x1b[1;32m",
     "frame": "\x1b[34m", "bold": "\x1b[1m",
@@ -65,14 +66,16 @@ def _encodes(text: str) -> bool:
 
 
 def as_text(diagnostics: Iterable[Diagnostic], colour: bool = False) -> str:
-    """All findings for reading, and a count of them at the end."""
+    """All findings for reading, what is said of several places once, and a count of them at the end."""
     found = list(diagnostics)
     if not found:
         return ""
     paint = _Paint(colour)
-    parts = [_one(d, paint) for d in found[:MOST_PRINTED]]
-    if len(found) > MOST_PRINTED:
-        parts.append(f"… and {len(found) - MOST_PRINTED:,} more; `--format json` has them all")
+    alike = _alike(found)
+    parts = [_one(each[0], paint, [d.span for d in each[1:]]) for each in alike[:MOST_PRINTED]]
+    left = sum(map(len, alike[MOST_PRINTED:]))
+    if left:
+        parts.append(f"… and {left:,} more; `--format json` has them all")
     errors = sum(d.severity == "error" for d in found)
     warnings = len(found) - errors
     counts = [count(n, word) for n, word in ((errors, "error"), (warnings, "warning")) if n]
@@ -94,7 +97,17 @@ class _Paint:
         return f"{_STYLES[style]}{text}{_RESET}" if self.colour and text else text
 
 
-def _one(d: Diagnostic, paint: _Paint) -> str:
+def _alike(found: Iterable[Diagnostic]) -> list[list[Diagnostic]]:
+    """Findings of which the same is said, in the order of the first of them."""
+    by: dict[object, list[Diagnostic]] = {}
+    for d in found:
+        said = (d.severity, d.code, d.label, d.help, d.suggestion, d.notes, d.span.source.name)
+        by.setdefault(said if d.label else id(d), []).append(d)
+    return list(by.values())
+
+
+def _one(d: Diagnostic, paint: _Paint, also: Sequence[Span] = ()) -> str:
+    """also: where the same is said"""
     lines = [f"{paint(d.severity, f'{d.severity}[{d.code}]')}: {paint('bold', printable(d.title))}"]
     lines += _excerpt(d.span, d.severity, d.label, "-->", paint)
     edge = paint("frame", " " * len(str(d.span.line_number)) + " =")
@@ -105,6 +118,12 @@ def _one(d: Diagnostic, paint: _Paint) -> str:
     for span, text in d.notes:
         lines.append(f"{edge} {paint('note', 'note')}: {printable(text)}")
         lines += _excerpt(span, "note", "", "-->", paint)
+    lower = list(dict.fromkeys(span.line_number for span in also if span.line_number != d.span.line_number))
+    if lower:
+        rest = [f"{len(lower) - _MOST_LINES} more"] if len(lower) > _MOST_LINES else []
+        where = listing([*map(str, lower[:_MOST_LINES]), *rest], last="and")
+        word = "line" if len(lower) == 1 else "lines"
+        lines.append(f"{edge} {paint('note', 'note')}: the same on {word} {where}")
     return "\n".join(lines)
 
 

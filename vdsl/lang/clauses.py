@@ -42,6 +42,7 @@ _PERCEIVES = {
     "wave",
     "point",
 }
+_JOIN = ("and", "then", "but")
 COMMA = ","
 _MOST_ACTION_WORDS = 3
 
@@ -66,12 +67,30 @@ class Sentence:
 
 def one_sentence(said: Words, known: Known) -> Sentence:
     """The words of a sentence without possessives, taken apart."""
+    said = _in_one_manner(said, known)
     begun = _begun(said, known)
     if begun is not None:
         return begun
     said, left = _with_and(said, known)
     parts, clauses = _parts(said, known)
     return Sentence(parts, (*clauses, *left))
+
+
+def _in_one_manner(said: Words, known: Known) -> Words:
+    """Without the ``and`` of ``quickly and quietly``, which joins nothing that is done."""
+    hows = [says_how(word) and word.text not in known.named for word in said]
+    out: list[ast.Name] = []
+    for k, word in enumerate(said):
+        after = next((n for n in range(k, len(said)) if said[n].text not in _JOIN), k)
+        before = next((n for n in range(k - 1, -1, -1) if said[n].text not in _JOIN), k)
+        if after == k or before == k or not (hows[before] and hows[after]):
+            out.append(word)
+            continue
+        first = next((n for n in range(before, 0, -1) if not hows[n - 1]), 0)
+        done = said[after + 1].text if after + 1 < len(said) else ""
+        if first > subject(said, known) and done and done not in PREPOSITIONS and done not in ARTICLES:
+            out.append(word)  # `sits quietly and slowly eats`
+    return tuple(out)
 
 
 def one_after_the_other(said: Words, known: Known) -> tuple[Words, tuple[Words, ...]]:

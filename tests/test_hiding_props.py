@@ -19,7 +19,7 @@ _RAYS = 200
 #: What may be hidden by more than is known, m² and share of all it hides: knobs, feet and the like.
 _LITTLE, _SHARE = 0.06, 0.2
 #: Frames, posts and legs with little about them; what is larger than this, metres, is a backdrop, or a house.
-_SHEER = ("library_ladder", "signpost", "swing", "train_table", "window", "wire_fence")
+_SHEER = ("cell_bars", "library_ladder", "signpost", "swing", "train_table", "window", "wire_fence")
 _LARGE = 4.0
 
 

@@ -243,5 +243,5 @@ def _set_shadow(
     light.fit(*things, *points, TEXEL, size, 1, frame, *backend.crew(1))
     runs = up(np.array([[0, 0, len(casting)]], np.int32))
     target = (frame, size, 1, depth, spare, coarse)
-    light.cast(*things, faces, casters, runs, 0, *target, *backend.crew(1))
+    light.cast_by(backend.crew(1), *things, faces, casters, runs, 0, *target)
     return ShadowMap(size, frame, depth, coarse)

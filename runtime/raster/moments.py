@@ -139,24 +139,38 @@ class Moments:
 
     def _touch(self, loaded: Loaded, moments: int, moving: NDArray[np.bool_]) -> None:
         """What stands on the floor and on furniture: of what rests, found once."""
-        a, up, cells = loaded.arrays, self._backend.upload, 2 * loaded.rows * loaded.columns
+        cells = 2 * loaded.rows * loaded.columns
         counted = self._buffer("counted", (moments * cells,), np.int32)
         runs, resting = loaded.rig.touching(moving)
         base = self._buffer("resting", (cells,), np.int32)
         nothing = self._buffer("nothing", (cells,), np.int32)
-        floor = (a["floor"], a["tops"], loaded.highest, loaded.columns, loaded.rows)
         for count, some, begin, out in ((1, resting, nothing, base), (moments, runs, base, counted)):
             if out is base and not len(some):
                 base.fill(0)
                 continue
-            queue, slots, host = self._backend.crew(count)
-            stretch = slots // self._backend.threads if host else 1
-            spare = self._buffer("spare", (slots // stretch * cells // 2 * 3,), np.int32)
-            things = (self.position, a["area"], a["solid"], up(some), count)
-            crew = (queue, slots, stretch, host)
-            self._contact.touch(*things, *floor, begin, spare, out, self.ground, *crew)
+            self._count(loaded, some, count, begin, out, cells)
             if out is base and self._backend.on_host:
                 self._ground_of(moments)[:] = self.ground[:cells]
+
+    def _count(
+        self, loaded: Loaded, runs: NDArray[np.int32], moments: int, begin: Any, out: Any, cells: int
+    ) -> None:
+        """What the vertices of runs leave in moments, added to what there is to ``begin`` with."""
+        a, up = loaded.arrays, self._backend.upload
+        floor = (a["floor"], a["tops"], loaded.highest, loaded.columns, loaded.rows)
+        things = (self.position, a["area"], a["solid"])
+        if not self._backend.on_host:
+            spare = self._buffer("spare", (moments * cells,), np.int32)
+            listed = [np.arange(first, end, dtype=np.int32) for first, end in runs]
+            some = np.concatenate(listed) if listed else np.zeros(0, np.int32)
+            memory = (begin, spare, out, self.ground)
+            self._contact.touch_atomic(*things, up(some), len(some), moments, *floor, *memory)
+            return
+        queue, slots, host = self._backend.crew(moments)
+        stretch = slots // self._backend.threads
+        spare = self._buffer("spare", (slots // stretch * cells // 2 * 3,), np.int32)
+        memory, crew = (begin, spare, out, self.ground), (queue, slots, stretch, host)
+        self._contact.touch(*things, up(runs), moments, *floor, *memory, *crew)
 
     def _ground_of(self, moment: int) -> Any:
         """How closely things stand in a moment, flat. Host only."""

@@ -19,6 +19,7 @@ from .detail import COUNT, FINEST
 from .device import Backend, start
 from .empty import EmptySets
 from .glazing import Glazing, merged
+from .landing import Landing
 from .loaded import Loaded, loaded
 from .memory import budget, bytes_of_moment, bytes_of_view
 from .moments import Moments
@@ -51,7 +52,7 @@ class Renderer:
         self._buffers: dict[str, Any] = {}
         self._most = 1 << 20  # views at a time; fewer once memory has run out
         self.budget = 0  # bytes that the views drawn at a time may take, from :meth:`load` on
-        self._pool = Pool()
+        self._pool, self._landing = Pool(), Landing(self.backend.name == "cuda")
         self._passes = Passes(self.backend, self._buffer, self.style)
         self._plain = Plain(self.backend, self._buffer, self._passes.film) if self.style.plain else None
         self._moments = Moments(self.backend, self._buffer, self.style)
@@ -156,6 +157,7 @@ class Renderer:
                 chunk = (part.stop - begin) // 2  # less at a time, from now on
                 self._most = min(chunk, self._most)
                 self._buffers.clear()
+                self._landing.release()
                 self._empty.forget()
                 moved, every = slice(0), False
                 continue
@@ -255,7 +257,9 @@ class Renderer:
             return
         if self._plain is not None:
             moved = (moments.position, moments.normal)
-            self._plain.draw(view_, moment_, moved, layer.vis, size, color, objects)
+            landed = self._landing.bytes(color).reshape(color.shape)
+            self._plain.draw(view_, moment_, moved, layer.vis, size, landed, objects)
+            self._landing.fetch(color)
             return
         layer.level.fill(passes.SHADE)
         box = (np.zeros((views, 4), np.int32),) * 2  # where there may be glass: of the set, and what moves
@@ -272,7 +276,9 @@ class Renderer:
         if lens is not None:
             self._lens = self._lens or Lens(self._buffer, up)
             self._lens.blur(lens, layer.vis, layer.picture, (passes.linear, passes.table), size)
-        passes.even_out(content, moments, layer, (view_, moment_, views), color, size)
+        landed = self._landing.bytes(color).reshape(color.shape)
+        passes.even_out(content, moments, layer, (view_, moment_, views), landed, size)
+        self._landing.fetch(color)
         if objects is not None:
             passes.object_ids(content, layer, objects)
 

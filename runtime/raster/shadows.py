@@ -154,7 +154,7 @@ class Shadows:
         a, (_, size, maps, _) = loaded.arrays, target
         blur = self._buffer(spare, (maps * self._light.summary_size(size),), np.float32)
         casters = (a["faces"], a["casters"], a["runs"], loaded.static_vertices)
-        self._light.cast(*things, *casters, *target, blur, coarse, *self._backend.crew(maps))
+        self._light.cast_by(self._backend.crew(maps), *things, *casters, *target, blur, coarse)
 
     @property
     def maps(self) -> tuple[Any, ...]:

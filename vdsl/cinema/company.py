@@ -36,6 +36,8 @@ _HEAD_HALF, _BODY_HALF = 0.08, 0.18
 #: Metres between the chests of two of whom none covers the other, one above the other in the picture; and how
 #: much less somebody counts as shown who stands straight behind another.
 _TALL, _COVERED = 1.1, 0.8
+#: Sampled frames that are a while.
+_WHILE = 2
 
 
 def company_cut(
@@ -127,9 +129,17 @@ def company_shown(
         cut = np.maximum(cut, np.clip(over, 0.0, 2.0))
     shown = mean_of(share, takes.window)
     last = np.where(takes.window[:, -1], share[:, -1], shown)
-    shown = np.minimum(shown, (shown + last) / 2)  # the last picture is what is remembered
+    # the last picture is what is remembered, and whoever is lost for a while is looked for
+    shown = (shown + np.minimum(shown, np.minimum(last, _worst(share, takes.window)))) / 2
     sight["visibility"] = (sight["visibility"] + shown) / 2
     return {"interest": shown, "face": faces, "head_cropped": cropped, "head_cut": cut} | sight
+
+
+def _worst(share: Array, window: Bools) -> Array:
+    """Mean over the :data:`_WHILE` frames of the window in which the share [P, F] is least: [P]."""
+    least = np.sort(np.where(window, share, np.inf), axis=1)[:, :_WHILE]
+    there = np.isfinite(least)
+    return np.asarray(np.where(there, least, 0.0).sum(axis=1) / np.maximum(there.sum(axis=1), 1))
 
 
 def _covered(xy: Array, depth: Array, focal: Array, takes: Takes) -> Array:

@@ -55,7 +55,8 @@ MEASURES = (
     "face_covered",  # share of the face that the subject's own arms hide, or what these hold, and need not
     "company_cut",  # share of the time somebody beside the subject is in the picture without their head, and
     # more where the last frame is such a one
-    "foreground",  # share of the picture covered by something much nearer than the subject
+    "foreground",  # share of the picture covered by something much nearer than the subject, or ENDS_BEHIND
+    # of the share in the last frame where that is more
     "face",  # cosine between face and direction to the camera: 1 frontal, 0 profile, −1 from behind
     "clearance",  # metres from the camera to the nearest solid or person, at most 1
     "speed",  # metres a second, the greatest
@@ -71,6 +72,8 @@ _A_WALK = 1.0  # metres that count as going somewhere
 #: What an end on nobody and nothing counts in ``empty``: of a camera that comes from somewhere one waits for
 #: what it finds; one that leaves somebody is to lead to something.
 ENDS_EMPTY = 0.3
+#: How much what is in the way in the last frame counts, were there nothing in all others.
+ENDS_BEHIND = 0.4
 #: What is in the way within a share of the distance to the subject, and how much it counts; how many of the
 #: sampled frames are looked at.
 _NEAR, _LOOKED_AT = ((0.5, 1.0), (0.72, 0.4)), 6
@@ -236,7 +239,8 @@ def _foreground(
         seen = clear_lines(world.solids, camera[:, some], points, hidden, takes.ignore)
         seen &= clear_of_people(camera[:, some], points, others)
         blocked = np.maximum(blocked, np.where(seen, 0.0, counts))
-    return np.asarray(blocked.mean(axis=(1, 2)))
+    share = blocked.mean(axis=2)
+    return np.asarray(np.maximum(share.mean(axis=1), ENDS_BEHIND * share[:, -1]))
 
 
 def _motion(track: CameraTrack, roll: float, fps: float) -> dict[str, Array]:

@@ -70,6 +70,29 @@ def find_tops(vertices: f2, faces: i2, count: ti.i32, floor: f1, columns: ti.i32
                         tops[at] = ti.max(tops[at], a.z + u * b.z + v * c.z)
 
 
+@ti.func
+def left_by(
+    p,
+    cell,
+    v,
+    layer: ti.template(),
+    area: ti.template(),
+    solid: ti.template(),
+    floor: ti.template(),
+    tops: ti.template(),
+):
+    """What a vertex at ``p`` leaves in its cell of the floor (layer 0) or of furniture, a whole number; -1
+    where it is too far away for any."""
+    over = above_floor(p.z, floor) if ti.static(layer == 0) else p.z - tops[cell]
+    reach = ti.static(REACH[layer])
+    out = -1
+    if over < reach and ti.static((-1e9, -0.1)[layer]) < over:
+        share = 1.0 - ti.max(over, 0.0) / reach
+        amount = (area[v] if ti.static(layer == 0) else solid[v]) * share * share
+        out = ti.cast(ti.min(amount * (floor[2] * floor[2]), MOST) * UNIT + 0.5, ti.i32)
+    return out
+
+
 @ti.kernel
 def touch(
     position: f3,
@@ -110,7 +133,6 @@ def touch(
             blurred = own + 2 * cells
             for i in range(2 * cells):
                 counted[begin + i] = resting[i]
-            density = floor[2] * floor[2]
             for run in range(runs.shape[0]):
                 box = ti.Matrix([[columns, -1, rows, -1], [columns, -1, rows, -1]])
                 for v in range(runs[run, 0], runs[run, 1]):
@@ -120,16 +142,11 @@ def touch(
                         cell = floor_cell(p, floor, columns, rows)
                     if cell >= 0:
                         for layer in ti.static(range(2)):
-                            over = above_floor(p.z, floor) if ti.static(layer == 0) else p.z - tops[cell]
-                            reach = ti.static(REACH[layer])
-                            if over < reach and ti.static((-1e9, -0.1)[layer]) < over:
-                                share = 1.0 - ti.max(over, 0.0) / reach
-                                amount = (area[v] if ti.static(layer == 0) else solid[v]) * share * share
+                            amount = left_by(p, cell, v, layer, area, solid, floor, tops)
+                            if amount >= 0:
                                 x, y, at = cell % columns, cell // columns, own + layer * cells + cell
                                 # written out: one thread has the moment, and += would be an atomic addition
-                                spare[at] = spare[at] + ti.cast(
-                                    ti.min(amount * density, MOST) * UNIT + 0.5, ti.i32
-                                )
+                                spare[at] = spare[at] + amount
                                 box[layer, 0] = ti.min(box[layer, 0], x)
                                 box[layer, 1] = ti.max(box[layer, 1], x)
                                 box[layer, 2] = ti.min(box[layer, 2], y)
@@ -164,6 +181,70 @@ def touch(
                 ground[begin + i] = ti.cast(counted[begin + i], ti.f32) * ti.static(scale(0))
             for i in range(cells, 2 * cells):
                 ground[begin + i] = ti.cast(counted[begin + i], ti.f32) * ti.static(scale(1))
+
+
+@ti.kernel
+def touch_atomic(
+    position: f3,
+    area: f1,
+    solid: f1,
+    listed: i1,
+    count: ti.i32,
+    moments: ti.i32,
+    floor: f1,
+    tops: f1,
+    highest: ti.f32,
+    columns: ti.i32,
+    rows: ti.i32,
+    resting: i1,
+    spare: i1,
+    counted: i1,
+    ground: f1,
+):
+    """The same as :func:`touch`, a thread a vertex and then a cell, for machines of many threads.
+
+    All that is blurred is whole numbers that are added up, so it comes to the same whether things are blurred
+    one by one or together.
+
+    listed: the ``count`` vertices of the runs; spare: scratch as large as ``counted``
+    """
+    for i in range(moments * 2 * rows * columns):
+        counted[i] = 0
+    for i in range(moments * count):
+        m, v = i // count, listed[i % count]
+        p = vec3(position[m, v, 0], position[m, v, 1], position[m, v, 2])
+        cell = -1
+        if p.z < highest:
+            cell = floor_cell(p, floor, columns, rows)
+        if cell >= 0:
+            for layer in ti.static(range(2)):
+                amount = left_by(p, cell, v, layer, area, solid, floor, tops)
+                if amount > 0:
+                    ti.atomic_add(counted[(2 * m + layer) * rows * columns + cell], amount)
+    for i in range(moments * 2 * rows * columns):
+        spare[i] = spread(counted, i, columns, rows, 0)
+    for i in range(moments * 2 * rows * columns):
+        counted[i] = spread(spare, i, columns, rows, 1)
+    for i in range(moments * 2 * rows * columns):
+        spare[i] = spread(counted, i, columns, rows, 2)
+    for i in range(moments * 2 * rows * columns):
+        cells = rows * columns
+        counted[i] = spare[i] + resting[i % (2 * cells)]
+        unit = ti.static(scale(0)) if i // cells % 2 == 0 else ti.static(scale(1))
+        ground[i] = ti.cast(counted[i], ti.f32) * unit
+
+
+@ti.func
+def spread(counts: ti.template(), i, columns, rows, time: ti.template()):
+    """The sum of the cells around one, itself included, or itself if its layer is not blurred so often."""
+    out = counts[i]
+    x, y, layer = i % columns, i // columns % rows, i // (columns * rows) % 2
+    if time < (ti.static(BLURS[0]) if layer == 0 else ti.static(BLURS[1])):
+        out = 0
+        for down in range(ti.max(y - 1, 0), ti.min(y + 2, rows)):
+            for along in range(ti.max(x - 1, 0), ti.min(x + 2, columns)):
+                out += counts[i + (down - y) * columns + along - x]
+    return out
 
 
 def scale(layer: int) -> float:

@@ -9,6 +9,8 @@ need no further look.
 # mypy: ignore-errors
 # Taichi reads annotations as kernel types and parses the bodies itself.
 
+from typing import Any
+
 import taichi as ti
 
 from . import crew
@@ -155,8 +157,63 @@ def cast(
                     c = on_map(position, source[m], faces[t, 2] - offset, basis, frame, m)
                     towards = (b.x - a.x) * (c.y - a.y) - (c.x - a.x) * (b.y - a.y)
                     if towards > 0 or i >= runs[g, 1]:
-                        stamp(depth, base, size, a, b, c)
-            summarise(depth, base, size, spare, coarse, m)
+                        stamp(depth, True, base, size, a, b, c)
+            summarise(depth, size, spare, coarse, m)
+
+
+@ti.kernel
+def cast_atomic(
+    position: f3,
+    basis: f1,
+    entry: i1,
+    member: i2,
+    source: i1,
+    group: i1,
+    faces: i2,
+    casters: i1,
+    runs: i2,
+    offset: ti.i32,
+    frame: f2,
+    size: ti.i32,
+    maps: ti.i32,
+    depth: f1,
+    spare: f1,
+    coarse: f1,
+):
+    """The same as :func:`cast`, a thread a triangle and then a block, for machines of many threads."""
+    for i in range(maps * size * size):
+        depth[i] = NOWHERE
+    for task in range(maps * casters.shape[0]):
+        m, i = task // casters.shape[0], task % casters.shape[0]
+        g = group[m]
+        if frame[m, 0] < FAR_OFF and runs[g, 0] <= i < runs[g, 2]:
+            t = casters[i]
+            first = faces[t, 0] - offset
+            if member[m, entry[first]] != 0:
+                a = on_map(position, source[m], first, basis, frame, m)
+                b = on_map(position, source[m], faces[t, 1] - offset, basis, frame, m)
+                c = on_map(position, source[m], faces[t, 2] - offset, basis, frame, m)
+                towards = (b.x - a.x) * (c.y - a.y) - (c.x - a.x) * (b.y - a.y)
+                if towards > 0 or i >= runs[g, 1]:
+                    stamp(depth, False, m * size * size, size, a, b, c)
+    for i in range(maps * (size // FINE) * (size // FINE)):
+        blocks = (size // FINE) * (size // FINE)
+        within_fine(depth, size, spare, i // blocks, i % blocks)
+    for i in range(maps * (size // FINE) * (size // FINE)):
+        blocks = (size // FINE) * (size // FINE)
+        around_fine(size, spare, coarse, i // blocks, i % blocks)
+    for i in range(maps * (size // BLOCK) * (size // BLOCK)):
+        blocks = (size // BLOCK) * (size // BLOCK)
+        around_coarse(size, coarse, i // blocks, i % blocks)
+
+
+def cast_by(crew_of_maps: tuple[Any, int, bool], *told: Any) -> None:
+    """Draw casters into maps as the machine does it best. crew_of_maps: ``Backend.crew`` of as many maps;
+    told: what :func:`cast` asks for before it"""
+    if crew_of_maps[2]:
+        cast(*told, *crew_of_maps)
+    else:
+        cast_atomic(*told)
 
 
 @ti.kernel
@@ -203,39 +260,57 @@ def differing(
 
 
 @ti.func
-def summarise(depth: ti.template(), base, size, spare: ti.template(), coarse: ti.template(), m):
-    """The greatest and the least height around each fine block, and the greatest around coarse ones."""
+def summarise(depth: ti.template(), size, spare: ti.template(), coarse: ti.template(), m):
+    """The greatest and the least height around each fine block of a map, and the greatest around coarse
+    ones."""
+    for i in range((size // FINE) * (size // FINE)):
+        within_fine(depth, size, spare, m, i)
+    for i in range((size // FINE) * (size // FINE)):
+        around_fine(size, spare, coarse, m, i)
+    for i in range((size // BLOCK) * (size // BLOCK)):
+        around_coarse(size, coarse, m, i)
+
+
+@ti.func
+def within_fine(depth: ti.template(), size, spare: ti.template(), m, block):
+    """The greatest and the least height in a fine block of map ``m``."""
     blocks = size // FINE
-    begin = m * coarse_size(size)
+    i, j, begin = block % blocks, block // blocks, m * coarse_size(size)
+    least, most = 1e9, NOWHERE
+    for y in range(j * FINE, j * FINE + FINE):
+        for x in range(i * FINE, i * FINE + FINE):
+            z = depth[(m * size + y) * size + x]
+            least, most = lesser(z, least), greater(z, most)
+    spare[begin + block] = most
+    spare[begin + blocks * blocks + block] = least
+
+
+@ti.func
+def around_fine(size, spare: ti.template(), coarse: ti.template(), m, block):
+    """The same of a fine block and those around it."""
+    blocks = size // FINE
+    i, j, begin = block % blocks, block // blocks, m * coarse_size(size)
     low = begin + blocks * blocks
-    for j in range(blocks):
-        for i in range(blocks):
-            least, most = 1e9, NOWHERE
-            for y in range(j * FINE, j * FINE + FINE):
-                for x in range(i * FINE, i * FINE + FINE):
-                    z = depth[base + y * size + x]
-                    least, most = lesser(z, least), greater(z, most)
-            spare[begin + j * blocks + i] = most
-            spare[low + j * blocks + i] = least
-    for j in range(blocks):
-        for i in range(blocks):
-            least, most = 1e9, NOWHERE
-            for y in range(ti.max(0, j - 1), ti.min(blocks, j + 2)):
-                for x in range(ti.max(0, i - 1), ti.min(blocks, i + 2)):
-                    least = lesser(least, spare[low + y * blocks + x])
-                    most = greater(most, spare[begin + y * blocks + x])
-            coarse[begin + j * blocks + i] = most
-            coarse[low + j * blocks + i] = least
-    # a coarse block is two by two fine ones: what is around it is four by four of what is around those
-    wide = size // BLOCK
-    last = low + blocks * blocks
-    for j in range(wide):
-        for i in range(wide):
-            most = NOWHERE
-            for y in range(ti.max(0, 2 * j - 1), ti.min(blocks, 2 * j + 3)):
-                for x in range(ti.max(0, 2 * i - 1), ti.min(blocks, 2 * i + 3)):
-                    most = greater(most, coarse[begin + y * blocks + x])
-            coarse[last + j * wide + i] = most
+    least, most = 1e9, NOWHERE
+    for y in range(ti.max(0, j - 1), ti.min(blocks, j + 2)):
+        for x in range(ti.max(0, i - 1), ti.min(blocks, i + 2)):
+            least = lesser(least, spare[low + y * blocks + x])
+            most = greater(most, spare[begin + y * blocks + x])
+    coarse[begin + block] = most
+    coarse[low + block] = least
+
+
+@ti.func
+def around_coarse(size, coarse: ti.template(), m, block):
+    """The greatest height around a coarse block: it is two by two fine ones, and what is around it is four by
+    four of what is around those."""
+    blocks, wide = size // FINE, size // BLOCK
+    i, j, begin = block % wide, block // wide, m * coarse_size(size)
+    most = NOWHERE
+    for y in range(ti.max(0, 2 * j - 1), ti.min(blocks, 2 * j + 3)):
+        for x in range(ti.max(0, 2 * i - 1), ti.min(blocks, 2 * i + 3)):
+            most = greater(most, coarse[begin + y * blocks + x])
+    coarse[begin + 2 * blocks * blocks + block] = most
 
 
 @ti.func
@@ -252,8 +327,9 @@ def on_map(position: ti.template(), moment, v, basis: ti.template(), frame: ti.t
 
 
 @ti.func
-def stamp(depth: ti.template(), base, size, a, b, c):
-    """Keep the greatest height of one triangle in a map; corners are (x, y, height)."""
+def stamp(depth: ti.template(), alone: ti.template(), base, size, a, b, c):
+    """Keep the greatest height of one triangle in a map; corners are (x, y, height). alone: whether no other
+    thread draws into it"""
     if a.y > b.y:
         a, b = b, a
     if b.y > c.y:
@@ -286,8 +362,11 @@ def stamp(depth: ti.template(), base, size, a, b, c):
             start = base + y * size
             for x in range(x0, x1):
                 w = ti.min(ti.max(row + ti.cast(x, ti.f32) * slope_x, least), most)
-                if w > depth[start + x]:
-                    depth[start + x] = w
+                if ti.static(alone):
+                    if w > depth[start + x]:
+                        depth[start + x] = w
+                else:
+                    ti.atomic_max(depth[start + x], w)
 
 
 @ti.func

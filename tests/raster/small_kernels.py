@@ -4,7 +4,10 @@
 
 import taichi as ti
 
+from runtime.raster.kernels.light import lit
+
 f1, i1 = ti.types.ndarray(ti.f32, ndim=1), ti.types.ndarray(ti.i32, ndim=1)
+f2 = ti.types.ndarray(ti.f32, ndim=2)
 
 
 @ti.kernel
@@ -31,3 +34,9 @@ class Counter:
     @ti.kernel
     def stepped(self, x: ti.i32) -> ti.i32:
         return x + self.step
+
+
+@ti.kernel
+def light_at(at: f2, frame: f2, size: ti.i32, depth: f1, coarse: f1, out: f1):
+    for i in range(at.shape[0]):
+        out[i] = lit(ti.Vector([at[i, 0], at[i, 1], at[i, 2]]), 0, frame, size, depth, coarse)

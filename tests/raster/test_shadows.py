@@ -12,6 +12,7 @@ from raster_scenes import LIGHT, box, looking, scene, sphere, still
 from runtime.mesh import Mesh
 from runtime.raster.bake import light_basis
 from runtime.raster.casting import Home, casting_of
+from runtime.raster.device import start
 from runtime.raster.prepare import prepare
 from runtime.raster.renderer import Renderer
 from runtime.raster.types import LOOSE, STYLES, RenderScene, Style
@@ -130,3 +131,21 @@ def test_home_maps_are_cast_anew_only_where_something_came_or_went(monkeypatch: 
     assert homes(walks, (1280, 720)) == 1
     drawer.load(content)
     assert homes(walks, (1280, 720)) == 1
+
+
+def test_what_all_of_a_map_keeps_the_light_off_has_none_whatever_rounding_says() -> None:
+    start("cpu")
+    from small_kernels import light_at
+
+    from runtime.raster.kernels.light import summary_size
+
+    size = 32
+    depth, coarse = np.full(size**2, 1.0, np.float32), np.zeros(summary_size(size), np.float32)
+    blocks = (size // 4) ** 2
+    coarse[:blocks], coarse[blocks : 2 * blocks] = 2.0, -2.0  # so that every texel is looked at
+    at = np.random.default_rng(3).uniform(4, 27, (4000, 3)).astype(np.float32)
+    at[:2000, 2], at[2000:, 2] = 0.5, 1.5
+    frame, out = np.array([[0.0, 0.0, 1.0]], np.float32), np.zeros(len(at), np.float32)
+    light_at(at, frame, size, depth, coarse, out)
+    assert (out[:2000] == 0.0).all()
+    assert (out[2000:] == 1.0).all()

@@ -22,6 +22,7 @@ NOWHERE = -1e9
 FAR_OFF = 1e6  # metres, corner of a map that is not there
 MASK = 30  # maps of a moment that are told apart, but for one
 ALL = (1 << (MASK + 1)) - 1
+ROUNDING = 1e-5  # of weights that sum to one
 MANY = 256  # blocks of a map that are looked at for one place
 
 
@@ -493,7 +494,8 @@ def lit(q, m, frame: ti.template(), size, depth: ti.template(), coarse: ti.templ
                 for a in ti.static(range(4)):
                     row += wx[a] if depth[at + b * size + a] > q.z else 0.0
                 blocked += row * wy[b]
-            out = 1.0 - blocked
+            # the weights sum to one but for rounding: what all of them keep the light off has none
+            out = 1.0 - blocked if blocked < ti.static(1.0 - ROUNDING) else 0.0
     return out
 
 

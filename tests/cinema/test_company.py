@@ -8,6 +8,7 @@ import numpy as np
 from filmset import shot, skeleton, standing, story, world
 from numpy.typing import NDArray
 
+from runtime.world import World
 from vdsl.cinema.flaws import flaws
 from vdsl.cinema.measures import measure
 from vdsl.cinema.sizes import size_of
@@ -201,3 +202,37 @@ def test_of_a_room_with_people_faces_are_proposed_first() -> None:
     faces = np.array([cameras[int(i)].measures["face"] for i in ranked])
     assert faces[:5].min() > -0.3
     assert faces.min() < -0.6, "there are others to choose from"
+
+
+def dollying(told: StoryProposal, ground: World, ends: float) -> dict[str, float]:
+    """A camera that goes aside from y = 0.6 before two people in a place."""
+    area = place("hall", (-4.0, -4.0, 0.0), (4.0, 4.0, 3.0), FRAMES)
+    people = subject_of(replace(shot(), focus=None), told, replace(FILMING, world=ground)).company
+    takes = takes_of("wide", "place", (5.0, 0.6, 1.5), (0.0, 0.0, 1.2))
+    away = np.array([0.0, 1.0, 0.0]) * np.linspace(0.0, ends - 0.6, FRAMES)[:, None]
+    track = replace(takes.track, position=takes.track.position + away, look_at=takes.track.look_at + away)
+    found = measure(replace(takes, track=track), replace(area, company=people), ground, 24.0).values
+    return {k: float(v[0]) for k, v in found.items()}
+
+
+def test_nothing_near_is_before_the_last_picture() -> None:
+    """A post that the camera comes to at the very end is in one of eight frames, the one that stays."""
+    told = replace(two((0.0, 1.2)), variant=STILL)
+    ended = dollying(told, world(boxes=((2.8, 2.35, 1.5, 0.12, 0.3, 1.5, 0.0),)), 1.6)
+    free = dollying(told, world(), 1.6)
+    assert free["foreground"] == 0.0
+    assert not flaws(free)["visibility"].any()
+    assert flaws(ended)["visibility"].all()
+
+
+def test_who_is_hidden_for_a_while_is_missed() -> None:
+    """Ben walks past behind Anna: side by side in most of the pictures, and in two of them gone."""
+    told = two((-1.5, 0.0))
+    way = np.stack([np.full(FRAMES, -1.5), np.linspace(-1.2, 1.2, FRAMES), np.zeros(FRAMES)], 1)
+    ben = standing(BODY, way, np.zeros(FRAMES))
+    past = replace(told, performances={**told.performances, "ben": ben})
+    eye = (5.0, 0.0, 1.5)
+    beside, crossing = in_a_place(two((-1.5, 1.2)), eye), in_a_place(past, eye)
+    assert not flaws(beside)["visibility"].any()
+    assert crossing["interest"] < 0.88
+    assert flaws(crossing)["visibility"].all()

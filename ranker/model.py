@@ -268,15 +268,18 @@ class ShotRanker(nn.Module):
 
     def margin(self, out: Output) -> Tensor:
         """What shots are put in order by, [B]: how much greater than those of an average good one the odds
-        are that they are among the best liked, above the highest step; where liking is not taught, log odds
-        of being good.
+        are that they are among the best liked, above the highest step, and how well they seem composed; where
+        liking is not taught, log odds of being good.
 
         Who looks for the best of many asks for this alone: that one is rather good than bad is said by it
         too, and sums of the two found fewer of the best.
         """
         if not self.config.liking:
             return out.logit
-        return self.config.liking * (out.liked[:, -1] - STEP_ODDS[-1])
+        liked = self.config.liking * (out.liked[:, -1] - STEP_ODDS[-1])
+        if not self.config.appealing:
+            return liked
+        return liked + self.config.appealing * out.told[:, self.config.appeal]
 
     def _seen(self, moved: Tensor | None) -> Tensor | None:
         """What is made of the motion of shots; zeros where it is not known."""

@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 from torch import Tensor, nn
 
 from .batches import Batch, batches, count_of
-from .config import LIKING, PAPER, ModelConfig, Phase, TrainConfig, to_json
+from .config import APPEALING, LIKING, PAPER, ModelConfig, Phase, TrainConfig, to_json
 from .curves import draw_curves
 from .data import Dataset
 from .dictionary import Dictionary, follow, momentum_copy
@@ -40,6 +40,7 @@ from .weights import load_model, save_weights
 
 #: Clips by which eight bits are fitted, and by which they are compared with float32.
 _MEASURED, _COMPARED = 64, 200
+_APPEAL = "good_all"  # the measure that says how well a shot is composed
 _WIDE_PACE = 0.1  # of the learning rate, for layers that read all that describes a shot
 #: Seconds of work that a checkpoint has to be worth: short epochs do not all write one.
 _WORTH_KEEPING = 20.0
@@ -80,6 +81,8 @@ def train(
 
     # The network, the encoder of the keys that follows it, and the dictionary of keys.
     words = data.words
+    taught_of = list(data.hints[0]) if config.hint_weight else []
+    liking = LIKING if config.order_weight and np.isfinite(data.liked).any() else 0.0
     shape = ModelConfig(
         words.movements,
         words.scales,
@@ -90,14 +93,16 @@ def train(
         min(config.inner, config.size),
         motion=config.motion,
         moments=config.moments,
-        measures=len(data.hints[0]) if config.hint_weight else 0,
+        measures=len(taught_of),
         first_fault=data.faults.start if config.hint_weight else 0,
         faults=data.faults.stop - data.faults.start if config.hint_weight else 0,
         marks=len(data.frame_hints[0]) if config.hint_weight and data.hints[0] else 0,
         guides=config.guides if data.guided is not None else 0,
         meant=_tells_meant(config, data),
         people=config.guides > 0 and data.guided is not None,
-        liking=LIKING if config.order_weight and np.isfinite(data.liked).any() else 0.0,
+        liking=liking,
+        appeal=taught_of.index(_APPEAL) if _APPEAL in taught_of else 0,
+        appealing=APPEALING if liking and _APPEAL in taught_of else 0.0,
     )
     if not shape.guides and any(phase.size == 0 for phase in config.phases):
         config = replace(config, phases=tuple(phase for phase in config.phases if phase.size))

@@ -78,6 +78,22 @@ def test_what_is_told_of_a_shot_is_learnt_and_judged_by(tmp_path: Path) -> None:
     assert float((more[0] - more[1]).abs().max()) > 0.01  # what is told counts
 
 
+def test_how_well_shots_seem_composed_counts_for_their_order() -> None:
+    config = model_config(measures=5, liking=1.0)
+    frames = torch.rand(6, FRAMES, 3, SIZE, SIZE)
+    torch.manual_seed(0)
+    model = ShotRanker(config).eval()
+    with torch.inference_mode():
+        out = model(frames, frame_times(config).expand(6, -1))
+    alone = model.margin(out)
+    model.config = replace(config, appeal=3, appealing=2.0)
+    torch.testing.assert_close(model.margin(out), alone + 2.0 * out.told[:, 3])
+    loaded = model_from_json(to_json(model.config))
+    assert (loaded.appeal, loaded.appealing) == (3, 2.0)
+    with pytest.raises(RankerError, match="out of range"):
+        model_from_json(to_json(replace(config, appeal=5, appealing=2.0)))
+
+
 def test_one_fault_is_enough_for_a_shot_not_to_be_good() -> None:
     config = model_config(measures=5, first_fault=1, faults=3)
     model = ShotRanker(config)

@@ -10,7 +10,7 @@ what stands on it.
 import taichi as ti
 
 from . import crew
-from .geometry import f1, f2, f3, i1, i2, vec3
+from .geometry import f1, f2, f3, i1, i2, item3, vec3
 
 LOWEST, HIGHEST = 0.25, 1.6  # metres over the floor between which furniture ends above
 UPWARD = 0.9  # how far up what things stand on faces
@@ -36,6 +36,15 @@ def floor_cell(p, floor: ti.template(), columns, rows):
     x = ti.cast(ti.floor((p.x - floor[0]) * floor[2]), ti.i32)
     y = ti.cast(ti.floor((p.y - floor[1]) * floor[2]), ti.i32)
     return y * columns + x if 0 <= x < columns and 0 <= y < rows else -1
+
+
+@ti.func
+def cell_below(p, highest, floor: ti.template(), columns, rows):
+    """The same of what is not too high to count; -1 for the rest, which nobody need look for."""
+    cell = -1
+    if p.z < highest:
+        cell = floor_cell(p, floor, columns, rows)
+    return cell
 
 
 @ti.kernel
@@ -136,10 +145,8 @@ def touch(
             for run in range(runs.shape[0]):
                 box = ti.Matrix([[columns, -1, rows, -1], [columns, -1, rows, -1]])
                 for v in range(runs[run, 0], runs[run, 1]):
-                    p = vec3(position[m, v, 0], position[m, v, 1], position[m, v, 2])
-                    cell = -1
-                    if p.z < highest:
-                        cell = floor_cell(p, floor, columns, rows)
+                    p = item3(position, m, v)
+                    cell = cell_below(p, highest, floor, columns, rows)
                     if cell >= 0:
                         for layer in ti.static(range(2)):
                             amount = left_by(p, cell, v, layer, area, solid, floor, tops)
@@ -212,10 +219,8 @@ def touch_atomic(
         counted[i] = 0
     for i in range(moments * count):
         m, v = i // count, listed[i % count]
-        p = vec3(position[m, v, 0], position[m, v, 1], position[m, v, 2])
-        cell = -1
-        if p.z < highest:
-            cell = floor_cell(p, floor, columns, rows)
+        p = item3(position, m, v)
+        cell = cell_below(p, highest, floor, columns, rows)
         if cell >= 0:
             for layer in ti.static(range(2)):
                 amount = left_by(p, cell, v, layer, area, solid, floor, tops)

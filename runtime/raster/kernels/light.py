@@ -150,15 +150,23 @@ def cast(
                 depth[base + i] = NOWHERE
             g = group[m]
             for i in range(runs[g, 0], runs[g, 2]):
-                t = casters[i]
-                first = faces[t, 0] - offset
-                if member[m, entry[first]] != 0:
-                    a = on_map(position, source[m], first, basis, frame, m)
-                    b = on_map(position, source[m], faces[t, 1] - offset, basis, frame, m)
-                    c = on_map(position, source[m], faces[t, 2] - offset, basis, frame, m)
-                    towards = (b.x - a.x) * (c.y - a.y) - (c.x - a.x) * (b.y - a.y)
-                    if towards > 0 or i >= runs[g, 1]:
-                        stamp(depth, True, base, size, a, b, c)
+                closed = i < runs[g, 1]
+                draw(
+                    position,
+                    basis,
+                    entry,
+                    member,
+                    source,
+                    faces,
+                    offset,
+                    frame,
+                    depth,
+                    True,
+                    size,
+                    casters[i],
+                    closed,
+                    m,
+                )
             summarise(depth, size, spare, coarse, m)
 
 
@@ -188,15 +196,23 @@ def cast_atomic(
         m, i = task // casters.shape[0], task % casters.shape[0]
         g = group[m]
         if frame[m, 0] < FAR_OFF and runs[g, 0] <= i < runs[g, 2]:
-            t = casters[i]
-            first = faces[t, 0] - offset
-            if member[m, entry[first]] != 0:
-                a = on_map(position, source[m], first, basis, frame, m)
-                b = on_map(position, source[m], faces[t, 1] - offset, basis, frame, m)
-                c = on_map(position, source[m], faces[t, 2] - offset, basis, frame, m)
-                towards = (b.x - a.x) * (c.y - a.y) - (c.x - a.x) * (b.y - a.y)
-                if towards > 0 or i >= runs[g, 1]:
-                    stamp(depth, False, m * size * size, size, a, b, c)
+            closed = i < runs[g, 1]
+            draw(
+                position,
+                basis,
+                entry,
+                member,
+                source,
+                faces,
+                offset,
+                frame,
+                depth,
+                False,
+                size,
+                casters[i],
+                closed,
+                m,
+            )
     for i in range(maps * (size // FINE) * (size // FINE)):
         blocks = (size // FINE) * (size // FINE)
         within_fine(depth, size, spare, i // blocks, i % blocks)
@@ -258,6 +274,35 @@ def differing(
                         for x in range(ti.max(0, 2 * i - 2), ti.min(blocks, 2 * i + 4)):
                             most = greater(most, spare[own + y * blocks + x])
                     changed[last + j * wide + i] = most
+
+
+@ti.func
+def draw(
+    position: ti.template(),
+    basis: ti.template(),
+    entry: ti.template(),
+    member: ti.template(),
+    source: ti.template(),
+    faces: ti.template(),
+    offset,
+    frame: ti.template(),
+    depth: ti.template(),
+    alone: ti.template(),
+    size,
+    t,
+    closed,
+    m,
+):
+    """Draw triangle ``t`` into map ``m`` if it is of it; what faces away from the light only if it is of no
+    closed shell."""
+    first = faces[t, 0] - offset
+    if member[m, entry[first]] != 0:
+        a = on_map(position, source[m], first, basis, frame, m)
+        b = on_map(position, source[m], faces[t, 1] - offset, basis, frame, m)
+        c = on_map(position, source[m], faces[t, 2] - offset, basis, frame, m)
+        towards = (b.x - a.x) * (c.y - a.y) - (c.x - a.x) * (b.y - a.y)
+        if towards > 0 or not closed:
+            stamp(depth, alone, m * size * size, size, a, b, c)
 
 
 @ti.func

@@ -41,19 +41,24 @@ def takes_of(
     return Takes(track, (size_of(kind, scale),), window, key, 0.0, False, ())
 
 
-def measured(told: StoryProposal, eye: tuple[float, float, float], aim: tuple[float, float, float]) -> float:
+def measured(
+    told: StoryProposal,
+    eye: tuple[float, float, float],
+    aim: tuple[float, float, float],
+    ground: World = FILMING.world,
+) -> float:
     """How long somebody else has no head in a medium close-up of Anna."""
     subject = subject_of(shot(scale="medium-close-up"), told, FILMING)
     assert [one.name for one in subject.company] == ["ben"]
     takes = takes_of("medium-close-up", "person", eye, aim)
-    return float(measure(takes, subject, FILMING.world, 24.0).values["company_cut"][0])
+    return float(measure(takes, subject, ground, 24.0).values["company_cut"][0])
 
 
 def test_somebody_whose_body_is_in_the_picture_is_to_have_a_head_in_it() -> None:
     low = ((1.8, 0.0, 1.0), (0.0, 0.0, 0.7))  # camera and aim: to the waist, and no head of anybody
     assert measured(two((0.0, 0.6)), *low) == 1.0
     assert measured(two((0.0, 3.0)), *low) == 0.0, "beside the picture"
-    assert measured(two((0.0, 0.6)), (3.5, 0.0, 1.4), (0.0, 0.0, 1.3)) < 1e-9, "whole"
+    assert measured(two((0.0, 0.9)), (3.5, 0.0, 1.4), (0.0, 0.0, 1.3)) < 1e-9, "whole"
     assert 0.2 < measured(two((-2.2, 0.3)), *low) < 0.99, "who is farther off counts less"
     assert measured(two((-5.0, 0.3)), *low) == 0.0
 
@@ -73,8 +78,39 @@ def test_a_side_of_somebody_counts_and_a_side_of_a_head_is_a_head() -> None:
 def test_a_head_from_behind_is_to_be_there_with_its_crown() -> None:
     """Cut above the eyes, a face is still one, and the back of a head hardly told from a collar."""
     above = ((1.8, 0.0, 1.2), (0.0, 0.0, 1.08))
-    assert measured(two((0.0, 0.5)), *above) < 0.1
+    assert measured(two((0.0, 0.5)), *above) < 0.2
     assert measured(two((0.0, 0.5), np.pi), *above) == 1.0
+
+
+def test_a_head_behind_somebody_or_something_is_none() -> None:
+    """Ben stands behind Anna, so that an arm or a side of his looks out beside her."""
+    eye = ((2.5, 0.0, 1.4), (0.0, 0.0, 1.3))
+    assert measured(two((-0.8, 0.12)), *eye) > 0.6, "his head is behind hers, his shoulder is not"
+    assert measured(two((-0.8, 0.0)), *eye) <= 0.5, "nothing of him is seen"
+    assert measured(two((-0.8, 0.8)), *eye) < 0.1, "apart"
+    lamp = world(boxes=((0.6, 0.62, 1.6, 0.05, 0.25, 0.3, 0.0),))  # before his head, and not his body
+    assert measured(two((0.0, 0.8)), (3.5, 0.0, 1.4), (0.0, 0.0, 1.3), lamp) > 0.9
+
+
+def test_somebody_a_thing_halves_is_ugly_and_no_fault() -> None:
+    post = world(boxes=((1.0, 0.65, 1.0, 0.05, 0.12, 1.0, 0.0),))  # before one side of Ben
+    whole = measured(two((0.0, 1.1)), (3.5, 0.0, 1.4), (0.0, 0.0, 1.3))
+    split = measured(two((0.0, 1.1)), (3.5, 0.0, 1.4), (0.0, 0.0, 1.3), post)
+    assert whole < 0.1
+    assert 0.4 < split <= 0.5
+
+
+def test_people_are_best_shown_with_air_between_them() -> None:
+    eye = ((5.0, 0.0, 1.4), (0.0, 0.0, 1.1))
+    apart, near, lapped = (measured(two((0.0, y)), *eye) for y in (1.2, 0.6, 0.3))
+    assert apart == 0.0
+    assert 0.0 < near < lapped <= 0.5
+
+
+def test_feet_of_people_in_a_place_are_best_in_the_picture() -> None:
+    whole, cut = (in_a_place(two((0.0, 1.6)), (x, 0.8, 1.5)) for x in (5.5, 2.6))
+    assert whole["company_cut"] < 1e-9
+    assert 0.2 < cut["company_cut"] <= 0.25
 
 
 def test_those_a_view_is_of_are_no_company() -> None:

@@ -2,14 +2,22 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+from typing import Any
+
 import numpy as np
 import pytest
 from filmset import shot, skeleton, standing, story, world
 
 from runtime.world import Wall
 from vdsl.cinema.flaws import flaws_by_measure
+from vdsl.cinema.measures import measure
 from vdsl.cinema.sight import backdrop_gaps
+from vdsl.cinema.sizes import size_of
+from vdsl.cinema.takes import SAMPLES, Takes
+from vdsl.cinema.track import CameraTrack, look_at_rotation
 from vdsl.propose.cameras import Filming, propose_cameras
+from vdsl.propose.subjects import subject_of
 
 ROOM = (
     Wall((0, 0), (4, 0), 2.6),
@@ -38,6 +46,28 @@ def test_looks_past_the_room_are_gaps_of_the_backdrop() -> None:
     # aslant, beside the corner: what looks past the west wall finds nothing
     assert gaps((-2.0, -2.0), [45.0, 80.0], SOUTH | np.array([[False, False, False, True]]), ROOM) == 0.5
     assert gaps((2.0, 3.0), [270.0, 90.0], SOUTH, ROOM) == 0.5  # a wall that is missing behind the subject
+
+
+def of_floor(eye: tuple[float, float, float], aim: tuple[float, float, float], **ground: Any) -> float:
+    """Of somebody in the middle of a room of 6 m, without walls or with what is said."""
+    body, frames = skeleton(1.7), 24
+    told = story({"anna": standing(body, np.zeros((frames, 3)), np.zeros(frames))})
+    room = replace(world(**({"outdoor": False} | ground)), floors=((-3.0, -3.0, 3.0, 3.0),))
+    subject = subject_of(shot(scale="full"), told, Filming(room, {"anna": body}, 24.0, 3))
+    at, to = (np.tile(p, (1, frames, 1)).astype(float) for p in (eye, aim))
+    track = CameraTrack(at, look_at_rotation(at, to, 0.0), np.full((1, frames), 35.0), to, (36.0, 20.25))
+    window, key = np.ones((1, SAMPLES), bool), np.zeros(1, np.int64)
+    takes = Takes(track, (size_of("person", "full"),), window, key, 0.0, False, ())
+    return float(measure(takes, subject, room, 24.0).values["floor_gap"][0])
+
+
+def test_where_the_floor_of_a_room_ends_there_is_a_gap() -> None:
+    within, over_the_edge = (2.5, 0.0, 1.5), (10.0, 0.0, 1.6)
+    assert of_floor(within, (0.0, 0.0, 1.0)) == 0.0
+    assert of_floor(over_the_edge, (0.0, 0.0, 1.0)) > 0.2
+    assert of_floor(over_the_edge, (0.0, 0.0, 1.0), outdoor=True) == 0.0, "there is ground all around"
+    before = ((9.0, 0.0, 1.2, 0.1, 9.0, 1.2, 0.0),)
+    assert of_floor((10.0, 0.0, 1.6), (0.0, 0.0, 1.0), boxes=before) == 0.0, "something hides it"
 
 
 def test_out_of_doors_the_sky_is_no_gap() -> None:

@@ -432,6 +432,7 @@ def test_hints_of_a_mirrored_take_are_mirrored() -> None:
         "jerk": 4.0,
         "headroom_error": 0.5,
         "company_cut": 0.0,
+        "floor_gap": 0.0,
         "gesture_lost": 0.0,
     }
     measures |= {"interest": 1.0, "size_drift": 0.0, "angular_speed": 9.0}

@@ -13,29 +13,30 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .composition import broken
+from .covering import BEFORE, TRUNK, Crowd, behind_bodies, behind_heads, covered, crowd_of, crowded
 from .framing import Array
 from .subject import SIGHT, Subject
 from .takes import Bools, Picture, Takes, mean_of, pictured, turned, visibility, within
-from .together import behind_heads, turned_among
+from .together import turned_among
 from .track import project
 
 #: One who is nearer than the subject counts in full, one so many times as far away hardly any more.
 _FAR = 6.0
-#: What the last frame adds, and what somebody counts who has a head and is halved by a side of the frame.
-_ENDS, _HALF = 0.3, 0.5
+#: What the last frame adds; what somebody counts who has a head and is halved by a side of the frame; who
+#: stands before another in the picture, or without air between them; and who in a place is cut below.
+_ENDS, _HALF, _CROWDED, _FOOTLESS = 0.3, 0.5, 0.45, 0.25
+#: Share of a trunk's breadth behind somebody nearer from which on nothing is left of it to see.
+_GONE = 0.85
 #: Cosine between a face and the direction to the camera below which one sees the back of a head.
 _FACELESS = -0.2
 #: Share of the frame along its borders in which nobody counts as shown in a place.
 _EDGE = 0.06
 #: What is to be seen of somebody in a place.
 _UPPER = SIGHT[:3]
-#: Metres before the camera from which on somebody is in its picture.
-_BEFORE = 0.2
-#: Half the width of a head and of a trunk, metres.
-_HEAD_HALF, _BODY_HALF = 0.08, 0.18
-#: Metres between the chests of two of whom none covers the other, one above the other in the picture; and how
-#: much less somebody counts as shown who stands straight behind another.
-_TALL, _COVERED = 1.1, 0.8
+#: Half the width of a head, and how far to each side of a chest it is looked whether it is hidden: metres.
+_HEAD_HALF, _SIDE = 0.08, 0.15
+#: How much less somebody counts as shown who stands straight behind another.
+_COVERED = 0.8
 #: Sampled frames that are a while.
 _WHILE = 2
 
@@ -49,31 +50,86 @@ def company_cut(
     picture: Picture,
     seen_from: Callable[[Array], Bools],
 ) -> Array:
-    """Share [P] of the time in which somebody beside the subject is in the picture without their head, and
-    more by :data:`_ENDS` where the last frame is such a one: it is what is remembered of a take. Who is
-    halved by a side of the frame, head and all, counts for :data:`_HALF` of that.
+    """Share [P] of the time in which somebody beside the subject is in the picture without their head: it is
+    out of the frame, or somebody else or a thing is before it; and more by :data:`_ENDS` where the last frame
+    is such a one: it is what is remembered of a take. Who is halved by a side of the frame or by a thing,
+    head and all, counts for :data:`_HALF` of that, two without air between them for up to :data:`_CROWDED`,
+    and in a place whose feet are below the frame for :data:`_FOOTLESS`.
 
     seen_from: which of points [F, K, 3] no wall or thing hides, bool [P, F, K]
     """
     out, halves = np.zeros(camera.shape[:2]), np.zeros(camera.shape[:2])
-    own = np.maximum(picture.depth[:, :, picture.names.index("pocket")], _BEFORE)
-    for one in subject.company:
-        marks = ("eyes", "chin", "crown", "pocket", "waist")
-        points = np.stack([one.landmarks[name][at] for name in marks], axis=1)
-        xy, depth = project(points[None], camera, axes, takes.track.focal[:, at], takes.track.sensor)
-        far = depth[:, :, marks.index("pocket")]
-        wide = takes.track.focal[:, at] / takes.track.sensor[0] / np.maximum(far, _BEFORE)
-        inside = _beside(xy[:, :, :3], depth[:, :, :3], _HEAD_HALF * wide)
-        # a face may be cut above the brow; without one, what is left of a head is not told from a collar
-        head = inside[:, :, :2].all(axis=2) & (inside[:, :, 2] | (turned(one, at, camera) > _FACELESS))
-        body = _beside(xy[:, :, 3:], depth[:, :, 3:], _BODY_HALF * wide).any(axis=2) & (far > _BEFORE)
-        if body.any():
-            body &= seen_from(points[:, 3:]).any(axis=2)
-            near = np.clip((_FAR - far / own) / (_FAR - 1.0), 0.0, 1.0)
-            out = np.maximum(out, (body & ~head) * near)
-            halves = np.maximum(halves, (body & head) * near * _halved(xy[:, :, 3, 0], _BODY_HALF * wide))
+    asked = subject.members or ((subject,) if subject.kind == "person" else ())
+    if len(asked) + len(subject.company) < (1 if subject.kind == "place" else 2):
+        return np.zeros(len(camera))
+    own = np.maximum(picture.depth[:, :, picture.names.index("pocket")], BEFORE)
+    crowd = crowd_of(takes, (*asked, *subject.company), at, camera, axes)
+    headless, behind = behind_bodies(crowd)
+    there = np.zeros(crowd.depth.shape, bool)
+    there[..., : len(asked)] = _in_frame(takes, crowd, at)[..., : len(asked)]
+    for k, one in enumerate(subject.company, len(asked)):
+        body, head, split, far = _beside_it(takes, one, at, camera, axes, seen_from, behind[..., k] < _GONE)
+        head &= ~headless[..., k]
+        near = np.clip((_FAR - far / own) / (_FAR - 1.0), 0.0, 1.0)
+        out = np.maximum(out, (body & ~head) * near)
+        halves = np.maximum(halves, (body & head) * near * split)
+        there[..., k] = body
+    lapped = crowded(crowd, there)
     cut = out.mean(axis=1) + _ENDS * out[:, -1]
-    return np.asarray(np.clip(np.maximum(cut, _HALF * np.maximum(out, halves).mean(axis=1)), 0.0, 1.0))
+    halves = np.maximum(out, halves)
+    halved = _HALF * np.minimum(halves.mean(axis=1) + _ENDS * halves[:, -1], 1.0)
+    ugly = np.maximum(halved, _CROWDED * np.maximum(lapped.mean(axis=1), lapped[:, -1]))
+    if subject.kind == "place":
+        ugly = np.maximum(ugly, _FOOTLESS * _footless(takes, subject, at, camera, axes, there).mean(axis=1))
+    return np.asarray(np.clip(np.maximum(cut, ugly), 0.0, 1.0))
+
+
+def _beside_it(
+    takes: Takes,
+    one: Subject,
+    at: NDArray[np.int64],
+    camera: Array,
+    axes: Array,
+    seen_from: Callable[[Array], Bools],
+    stands_out: Bools,
+) -> tuple[Bools, Bools, Array, Array]:
+    """Of somebody beside a subject, [P, F] each: whether some of the body is in the picture, and of the head,
+    how much the frame or a thing halves the body, 0..1, and how far away it is. stands_out: [P, F], where
+    people leave something of the body to see"""
+    marks = ("eyes", "chin", "crown", "pocket", "waist")
+    points = np.stack([one.landmarks[name][at] for name in marks], axis=1)
+    xy, depth = project(points[None], camera, axes, takes.track.focal[:, at], takes.track.sensor)
+    far = depth[:, :, marks.index("pocket")]
+    wide = takes.track.focal[:, at] / takes.track.sensor[0] / np.maximum(far, BEFORE)
+    inside = _beside(xy[:, :, :3], depth[:, :, :3], _HEAD_HALF * wide)
+    # a face may be cut above the brow; without one, what is left of a head is not told from a collar
+    head = inside[:, :, :2].all(axis=2) & (inside[:, :, 2] | (turned(one, at, camera) > _FACELESS))
+    body = _beside(xy[:, :, 3:], depth[:, :, 3:], TRUNK * wide).any(axis=2) & (far > BEFORE) & stands_out
+    if not body.any():
+        return body, head, np.zeros(far.shape), far
+    aside = _SIDE * axes[:, :, None, 0]  # to the picture's right
+    sides = seen_from(points[None, :, 3:4] + np.concatenate([-aside, aside], axis=2))
+    seen = seen_from(points)
+    body &= seen[:, :, 3:].any(axis=2) | sides.any(axis=2)
+    head &= seen[:, :, :2].any(axis=2)
+    split = np.maximum(_halved(xy[:, :, 3, 0], TRUNK * wide), sides[..., 0] != sides[..., 1])
+    return body, head, split, far
+
+
+def _footless(
+    takes: Takes, subject: Subject, at: NDArray[np.int64], camera: Array, axes: Array, there: Bools
+) -> Array:
+    """Share [P, F] of those who are in the picture whose feet are below it."""
+    feet = np.stack([one.landmarks["feet"][at] for one in subject.company], axis=1)
+    xy, depth = project(feet[None], camera, axes, takes.track.focal[:, at], takes.track.sensor)
+    below = there & ((xy[..., 1] > 1.0) | (depth < BEFORE))
+    return np.asarray(below.sum(axis=-1) / np.maximum(there.sum(axis=-1), 1))
+
+
+def _in_frame(takes: Takes, crowd: Crowd, at: NDArray[np.int64]) -> Bools:
+    """Whose chests are in the frame, [P, F, K]."""
+    half = (np.array(takes.track.sensor) / takes.track.focal[:, at][..., None])[:, :, None]
+    return within(crowd.chests / half, crowd.depth, 0.0)
 
 
 def _halved(x: Array, half: Array) -> Array:
@@ -86,7 +142,7 @@ def _beside(xy: Array, depth: Array, aside: Array) -> Bools:
     """Which of points [P, F, K] are in the frame, or beside it by no more than so much of its width [P, F]:
     of what they are the middle of, a side is in it."""
     across = (xy[..., 0] > -aside[..., None]) & (xy[..., 0] < 1.0 + aside[..., None])
-    return np.asarray(across & (xy[..., 1] > 0.0) & (xy[..., 1] < 1.0) & (depth > _BEFORE))
+    return np.asarray(across & (xy[..., 1] > 0.0) & (xy[..., 1] < 1.0) & (depth > BEFORE))
 
 
 def company_shown(
@@ -103,14 +159,11 @@ def company_shown(
     ``visibility`` is that everybody is seen. seen_from: as above"""
     people, focal = subject.company, takes.track.focal[:, at]
     here = np.stack([subject.holds(one)[at] for one in people], axis=1)  # [F, people]
+    crowd = crowd_of(takes, people, at, camera, axes)
     eyes = np.stack([one.landmarks["eyes"][at] for one in people], axis=1)
     xy, depth = project(eyes[None], camera, axes, focal, takes.track.sensor)
-    half = np.array(takes.track.sensor) / focal[..., None]
-    seen = within(xy, depth, _EDGE) & seen_from(eyes) & ~behind_heads(xy * half[:, :, None], depth)
-    chests = np.stack([one.landmarks["pocket"][at] for one in people], axis=1)
-    apart = 1.0 - _COVERED * _covered(
-        *project(chests[None], camera, axes, focal, takes.track.sensor), focal, takes
-    )
+    seen = within(xy, depth, _EDGE) & seen_from(eyes) & ~behind_heads(crowd.eyes, depth)
+    apart = 1.0 - _COVERED * covered(crowd)
     counts = here.sum(axis=1)
     share = np.where(counts > 0, (seen * apart * here).sum(axis=2) / np.maximum(counts, 1), 1.0)
     faces, cropped, cut = (np.zeros(len(camera)) for _ in range(3))
@@ -140,19 +193,6 @@ def _worst(share: Array, window: Bools) -> Array:
     least = np.sort(np.where(window, share, np.inf), axis=1)[:, :_WHILE]
     there = np.isfinite(least)
     return np.asarray(np.where(there, least, 0.0).sum(axis=1) / np.maximum(there.sum(axis=1), 1))
-
-
-def _covered(xy: Array, depth: Array, focal: Array, takes: Takes) -> Array:
-    """How far somebody nearer stands before each of people [P, F, K], by where their chests are in the
-    picture: 0 for side by side, 1 for straight behind."""
-    scale = focal[..., None] / np.maximum(depth, _BEFORE)  # of metres there, in millimetres of the sensor
-    wide, high = _BODY_HALF * scale, _TALL * scale
-    x, y = (xy[..., k] * takes.track.sensor[k] for k in (0, 1))
-    beside = np.abs(x[..., :, None] - x[..., None, :]) / (wide[..., :, None] + wide[..., None, :])
-    above = np.abs(y[..., :, None] - y[..., None, :]) / high[..., None, :]
-    nearer = (depth[..., None, :] < depth[..., :, None]) & (depth[..., None, :] > _BEFORE)
-    over = np.clip(1.0 - beside, 0.0, 1.0) * np.clip(1.0 - above, 0.0, 1.0) * nearer
-    return np.asarray(over.max(axis=-1))
 
 
 def _sight(

@@ -27,6 +27,7 @@ from .takes import Bools, Picture, Takes, key_sample, mean_of, samples, turned, 
 from .together import everybody_measured, everybody_seen
 from .track import CameraTrack, camera_axes, project
 from .vectors import dot, length
+from .void import floor_gaps
 
 #: Names of what :func:`measure` returns, each [P].
 MEASURES = (
@@ -64,6 +65,8 @@ MEASURES = (
     "jerk",  # metres a second cubed, root mean square
     "horizon",  # degrees off the asked roll, the greatest
     "backdrop_gap",  # share of the picture's width where the set is missing behind the subject
+    "floor_gap",  # share of the picture's lower part where one looks past the floor of a room into nothing,
+    # or half of the share in the last frame where that is more
     "elevation",  # degrees the camera looks down (positive) at its aim, at the key frame
     "height",  # metres of the camera over the subject's floor, at the key frame
 )
@@ -118,6 +121,9 @@ def measure(takes: Takes, subject: Subject, world: World, fps: float) -> Measure
     def unhidden(points: Array) -> Bools:
         return clear_lines(world.solids, camera, points, hidden, takes.ignore)
 
+    def unhidden_in(points: Array, some: NDArray[np.int64]) -> Bools:
+        return clear_lines(world.solids, camera[:, some], points, hidden)
+
     seen = seen_from(sight)
     values["view"] = everybody_seen(takes, subject, at, camera, axes, seen_from)
     values |= visibility(takes, inside[:, :, sight_index], seen)
@@ -135,6 +141,7 @@ def measure(takes: Takes, subject: Subject, world: World, fps: float) -> Measure
     ends = at_end | shown[:, -1].any(axis=-1)
     values["empty"] = np.minimum(1.0 - somebody.mean(axis=1) + ENDS_EMPTY * ~ends, 1.0)
     values["company_cut"] = company_cut(takes, subject, at, camera, axes, picture, unhidden)
+    values["floor_gap"] = floor_gaps(takes, world, subject.floor, at, camera, axes, unhidden_in)
     looks = _ALL_OVER if subject.kind == "place" else _ASIDE
     values["foreground"] = _foreground(takes, world, at, camera, axes, picture, hidden, looks)
     values |= _motion(track, takes.roll, fps)

@@ -24,6 +24,7 @@ WEIGHTS = {
 #: Measures of what spoils a picture, and the share of the score each takes away where it is 1.
 PENALTIES = {
     "backdrop_gap": 0.5,
+    "floor_gap": 0.3,
     "foreground": 0.6,
     "face_covered": 0.4,
     "empty": 0.6,

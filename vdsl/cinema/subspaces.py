@@ -14,7 +14,8 @@ from .moves import RACK, family, of_camera
 AZIMUTHS = 8
 #: How far a camera of ``rig cinema`` may stand off its azimuth, degrees.
 ASIDE = 9.0
-#: The same where two have to be in the picture, at the ends of a rack-focus: half way to the next azimuth.
+#: The same where two have to be in the picture, at the ends of a rack-focus, and of a place, whose people
+#: look anywhere: half way to the next azimuth.
 ALL_AROUND = 180.0 / AZIMUTHS
 #: How far off the middle one who looks sideways may be put, share of the frame's width (``rig cinema``).
 LEAD = 0.13
@@ -100,8 +101,9 @@ def subspace(
     lam: tuple[float, ...],
     rig: str = "cinema",
     view: str = "",
+    place: bool = False,
 ) -> Subspace:
-    """Of a movement, or of two at once (``push+pan-left``).
+    """Of a movement, or of two at once (``push+pan-left``). place: of a shot in which nobody acts
 
     lens: the line's range in mm; lam: its choices of λ; view: over a shoulder and through eyes, where the
     camera stands and with which lens follows from the two people
@@ -120,7 +122,7 @@ def subspace(
     around = Variable("φ", "azimuth off the subject's heading", "°", grid=degrees)
     free: list[Variable] = [] if by_people else [around]
     if cinema and not by_people:
-        aside = ALL_AROUND if RACK in movement.split("+") else ASIDE
+        aside = ALL_AROUND if place or RACK in movement.split("+") else ASIDE
         free += [
             Variable("Δφ", "off that azimuth", "°", -aside, aside),
             Variable("f", "focal length at the first frame", "mm", *lens, _only(lens)),

@@ -59,6 +59,7 @@ NOTES = {
     "jerk": Note("m/s³", "it moves evenly", 0.0, 15.0),
     "horizon": Note("°", "the horizon is as asked", 0.0, 0.1),
     "backdrop_gap": Note("share", "no wall is missing behind", 0.0, 0.05),
+    "floor_gap": Note("share", "the floor reaches to the picture's border", 0.0, 0.15),
     "height": Note("m", "how high over the floor the camera is", 0.0, _ANY),
     "elevation": Note("°", "how far the camera looks down", -90.0, 90.0),
 }
@@ -76,6 +77,7 @@ _COMPARED = {
     "clearance": ("more room around the camera", "less room around the camera", "clearance"),
     "steadiness": ("steadier", "less steady", "angular_speed"),
     "backdrop_gap": ("less wall missing behind", "more wall missing behind", "backdrop_gap"),
+    "floor_gap": ("less to see of where the set ends", "more to see of where the set ends", "floor_gap"),
     "face_covered": (
         "arms, and what they hold, less before the face",
         "arms, or what they hold, more before the face",
@@ -226,6 +228,7 @@ def faults(measures: Measures, movement: str) -> tuple[str, ...]:
         (m["company_cut"] > 0.5, "shows somebody else without their head"),
         (m["foreground"] > 0.2, f"has something near over {covered} of the picture"),
         (m["backdrop_gap"] > 0.05, "misses a wall behind the subject"),
+        (m["floor_gap"] > 0.25, "shows where the set ends"),
         (m["interest"] < 0.5, "does not show all the line is about"),
         (m["lead_room"] < -0.1, f"leaves no room ahead of the face ({number('lead_room', m['lead_room'])})"),
         (m["angular_speed"] > 70.0, f"turns fast ({number('angular_speed', m['angular_speed'])})"),

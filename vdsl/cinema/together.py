@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .composition import broken
+from .covering import behind_heads, spread
 from .framing import Array
 from .gestures import act_missed, face_covered, gesture_lost, hands_missed
 from .sight import clear_of_people
@@ -22,7 +23,6 @@ from .track import project
 from .vectors import dot, length
 
 _HAIR, _CHEEK = 0.1, 0.02  # metres of a head to its side that hide, and of a face that is not to be hidden
-_HEAD = 0.11  # half a head's width and its hair, metres
 #: Cosine to the camera from which on one over whose shoulder it looks shows it a face, and what that takes
 #: away: it is a fault, but none for which there is to be no take at all.
 _FACES, _TO_US = 0.35, 0.25
@@ -49,8 +49,8 @@ def everybody_seen(
         return np.ones(len(camera))
     points = np.stack([head[at] for head in subject.heads.values()], axis=1)
     xy, depth = project(points[None], camera, axes, takes.track.focal[:, at], takes.track.sensor)
-    half = np.array(takes.track.sensor) / takes.track.focal[:, at][..., None]
-    seen = within(xy, depth, 0.03) & seen_from(points) & ~behind_heads(xy * half[:, :, None], depth)
+    aside = spread(xy, takes.track.focal[:, at], takes.track.sensor)
+    seen = within(xy, depth, 0.03) & seen_from(points) & ~behind_heads(aside, depth)
     return _held(np.asarray(seen.all(axis=-1)), takes.window)
 
 
@@ -74,17 +74,6 @@ def _over_a_shoulder(
         cosine = dot(to_camera, subject.via_face[None, at]) / np.maximum(length(to_camera), 1e-9)
         shows = mean_of(cosine > _FACES, takes.window)
     return _held(np.asarray(there), takes.window) * (1.0 - _TO_US * shows)
-
-
-def behind_heads(xy: Array, depth: Array) -> Bools:
-    """Which heads are behind another one, or behind its shoulders: [P, F, K]. xy: [P, F, K, 2], metres aside
-    and down at a metre's distance; depth: [P, F, K]."""
-    wide = _HEAD / np.maximum(depth, 0.1)
-    aside = np.abs(xy[..., :, None, 0] - xy[..., None, :, 0])  # [P, F, of this head, by that one]
-    over = xy[..., None, :, 1] - xy[..., :, None, 1]
-    nearer = depth[..., None, :] < depth[..., :, None] - 0.1
-    covered = nearer & (aside < wide[..., None, :] + 0.5 * wide[..., :, None]) & (over < wide[..., None, :])
-    return np.asarray(covered.any(axis=-1))
 
 
 def _held(there: Bools, window: Bools) -> Array:

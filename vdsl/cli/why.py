@@ -97,11 +97,13 @@ def _facts(checked: Checked, wanted: str, file: Path, build: Path | None, fresh:
 def _show_space(checked: Checked, wanted: str, as_json: bool) -> None:
     """What is fixed and what is free, for every style the shot may have."""
     from ..cinema.subspaces import subspace
+    from ..propose.subjects import establishes
 
     board = checked.storyboard
-    shot = next(s for line in board.lines for s in line.shots if s.id == wanted)
+    line, shot = next((line, s) for line in board.lines for s in line.shots if s.id == wanted)
+    place = establishes(shot, bool(line.beats))
     styles = [(m, s, a) for m in shot.movements for s in shot.scales for a in shot.angles]
-    spaces = [(" ".join(x), subspace(*x, shot.lens, shot.ease, board.rig, shot.view)) for x in styles]
+    spaces = [(" ".join(x), subspace(*x, shot.lens, shot.ease, board.rig, shot.view, place)) for x in styles]
     if as_json:
         entries = [
             {

@@ -48,7 +48,8 @@ def qualities(measures: Measures) -> dict[str, Array]:
         * _near(m["size_drift"], 0.9)
         * (1.0 - m["foreground"])
         * (1.0 - m["empty"])
-        * (1.0 - 0.4 * m["company_cut"]),
+        * (1.0 - 0.4 * m["company_cut"])
+        * (1.0 - 0.4 * m["floor_gap"]),
         "headroom": _near(m["headroom_error"], 0.12),
         "lead_room": np.clip(0.75 + 1.5 * m["lead_room"], 0.0, 1.0),
         "thirds": _near(m["thirds_error"], 0.16),

@@ -74,6 +74,7 @@ def propose_cameras(shot: Shot, stories: Sequence[StoryProposal], filming: Filmi
     few = min(_FEW, wanted)
     hard = 1 if shot.focus_to is None else _RACKED
     free = shot.any_lens and filming.rig == "cinema"
+    place = bool(subjects) and subjects[0].kind == "place"  # what stands apart there has no heading
 
     def consider(sample: Sample) -> None:
         nonlocal considered
@@ -88,7 +89,7 @@ def propose_cameras(shot: Shot, stories: Sequence[StoryProposal], filming: Filmi
         share = max(_HOPE * good / considered, _LEAST / hard) if considered else 0.75
         count = int(np.clip((wanted - good) / share, 16, hard * _MOST * wanted))
         rng = generator(filming.seed, shot.drawn_as, f"cameras {number}")
-        sample = draw(shot, len(stories), count, rng)
+        sample = draw(shot, len(stories), count, rng, place)
         if number == _ROUNDS or (number >= _HOPELESS and good < few):
             sample = nudged(sample, rng, free)  # what the grid has no room for may have some beside it
         consider(sample)

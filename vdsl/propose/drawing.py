@@ -61,8 +61,9 @@ def put_together(parts: Sequence[Sample]) -> Sample:
     return Sample(*(np.concatenate([getattr(p, f.name) for p in parts]) for f in fields(Sample)))
 
 
-def draw(shot: Shot, stories: int, count: int, rng: np.random.Generator) -> Sample:
-    """``count`` candidates for a shot over so many story proposals."""
+def draw(shot: Shot, stories: int, count: int, rng: np.random.Generator, all_around: bool = False) -> Sample:
+    """``count`` candidates for a shot over so many story proposals. all_around: from between the azimuths
+    too, as where two have to be seen at the ends of a rack-focus"""
 
     def pick(n: int) -> NDArray[np.int64]:
         blocks = np.tile(np.arange(n), (math.ceil(count / n), 1))
@@ -86,16 +87,16 @@ def draw(shot: Shot, stories: int, count: int, rng: np.random.Generator) -> Samp
         turn=spread(),
         travel=spread(),
         lead=spread(),
-        jitter=spread() if shot.focus_to is None else 0.5 + _ASIDE * (spread() - 0.5),
+        jitter=0.5 + (_ASIDE if all_around or shot.focus_to is not None else 1.0) * (spread() - 0.5),
         reach=np.ones(count),
         lam_too=np.asarray(shot.ease, float)[pick(len(shot.ease))],
         noise=rng.integers(2**31, size=count),
     )
 
 
-#: How far nudged cameras, and those of a rack-focus, stand off their azimuth: times the usual way, which is
-#: half way to the next one. Nudged ones go by shares of the solved distance, well within what ``wrong_size``
-#: allows.
+#: How far nudged cameras, those of a place, and of a rack-focus, stand off their azimuth: times the usual
+#: way, to half way to the next one. Nudged ones go by shares of the solved distance, well within what
+#: ``wrong_size`` allows.
 _ASIDE = ALL_AROUND / ASIDE
 _NEARER, _FARTHER = 0.91, 1.1
 #: Lenses, mm, that nudged cameras may have where the line says none: with the shortest a room is shown from

@@ -143,7 +143,7 @@ def _together(shot: Shot, story: StoryProposal, filming: Filming) -> Subject | N
 
 def _focused(shot: Shot, story: StoryProposal, filming: Filming) -> Subject:
     focus = shot.focus
-    if focus is None or _establishes(shot, story):
+    if focus is None or establishes(shot, story.variant != STILL):
         return _room_subject(filming, story.frames)
     if focus.kind == "character" and focus.path[-1] in story.performances:
         return _person(focus.path[-1], story, filming)
@@ -154,10 +154,10 @@ def _focused(shot: Shot, story: StoryProposal, filming: Filming) -> Subject:
     return _thing_subject(item, story, filming.world) if spot is None else _spot_subject(spot, story.frames)
 
 
-def _establishes(shot: Shot, story: StoryProposal) -> bool:
-    """Whether a shot in which nobody acts shows the place: it is wide, and nobody was named as its focus."""
+def establishes(shot: Shot, acted: bool) -> bool:
+    """Whether a shot shows the place: nobody acts, it is wide, and nobody was named as its focus."""
     named = shot.focus is not None and shot.focus.span.text == shot.focus.written
-    return story.variant == STILL and not named and set(shot.scales) <= {"extreme-wide", "wide", "full"}
+    return not acted and not named and set(shot.scales) <= {"extreme-wide", "wide", "full"}
 
 
 def find_object(world: World, target: Target) -> WorldObject | None:

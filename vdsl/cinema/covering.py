@@ -1,0 +1,113 @@
+"""Who stands before whom in the picture: heads and bodies of several people, as cameras see them.
+
+Assumes points in metres aside and down at a metre's distance (:func:`spread`), so that what is one metre
+large is ``1 / depth`` there.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .framing import Array
+from .subject import Subject
+from .takes import Bools, Takes
+from .track import project
+
+#: Metres before the camera from which on somebody is in its picture.
+BEFORE = 0.2
+_HEAD = 0.11  # half a head's width and its hair, metres
+#: Half the width of a trunk, and of one with its arms and some air beside it, metres.
+TRUNK, _AIR = 0.18, 0.42
+#: Metres between the chests of two of whom none covers the other, one above the other in the picture.
+_TALL = 1.1
+
+
+@dataclass(frozen=True, eq=False)
+class Crowd:
+    """K people in the pictures of P takes: [P, F, K, 2] each, as :func:`spread` has them; depth: of their
+    chests, [P, F, K]."""
+
+    eyes: Array
+    crowns: Array
+    chests: Array
+    depth: Array
+
+
+def crowd_of(
+    takes: Takes, people: tuple[Subject, ...], at: NDArray[np.int64], camera: Array, axes: Array
+) -> Crowd:
+    """Where people are in the pictures of the frames ``at``."""
+    focal = takes.track.focal[:, at]
+    found = []
+    for name in ("eyes", "crown", "pocket"):
+        points = np.stack([one.landmarks[name][at] for one in people], axis=1)
+        xy, depth = project(points[None], camera, axes, focal, takes.track.sensor)
+        found.append(spread(xy, focal, takes.track.sensor))
+    return Crowd(found[0], found[1], found[2], depth)
+
+
+def spread(xy: Array, focal: Array, sensor: tuple[float, float]) -> Array:
+    """Picture coordinates [P, F, K, 2] in metres aside and down at a metre's distance."""
+    return np.asarray(xy * (np.array(sensor) / focal[..., None])[:, :, None])
+
+
+def behind_heads(xy: Array, depth: Array) -> Bools:
+    """Which heads are behind another one, or behind its shoulders: [P, F, K]. xy: [P, F, K, 2], metres aside
+    and down at a metre's distance; depth: [P, F, K]."""
+    wide = _HEAD / np.maximum(depth, 0.1)
+    aside = np.abs(xy[..., :, None, 0] - xy[..., None, :, 0])  # [P, F, of this head, by that one]
+    over = xy[..., None, :, 1] - xy[..., :, None, 1]
+    nearer = depth[..., None, :] < depth[..., :, None] - 0.1
+    covered = nearer & (aside < wide[..., None, :] + 0.5 * wide[..., :, None]) & (over < wide[..., None, :])
+    return np.asarray(covered.any(axis=-1))
+
+
+def behind_bodies(crowd: Crowd) -> tuple[Bools, Array]:
+    """Which people's heads are behind the head or the body of somebody nearer, and what share of the breadth
+    of their trunks is behind such a body: [P, F, K] each."""
+    half = TRUNK / np.maximum(crowd.depth, BEFORE)
+    nearer = _nearer(crowd)
+    x, y, top = crowd.chests[..., 0], crowd.chests[..., 1], crowd.crowns[..., 1]
+    low, high = x - half, x + half
+    last, first = high[..., :, None], low[..., :, None]
+    both = np.minimum(last, high[..., None, :]) - np.maximum(first, low[..., None, :])
+    share = np.clip(both / (2.0 * half[..., :, None]), 0.0, 1.0)
+    hidden = (share * (nearer & (top[..., None, :] < y[..., :, None]))).max(axis=-1)
+    eyes = crowd.eyes
+    aside = np.abs(eyes[..., :, None, 0] - x[..., None, :])
+    trunk = nearer & (aside < half[..., None, :]) & (y[..., None, :] < eyes[..., :, None, 1])
+    return np.asarray(behind_heads(eyes, crowd.depth) | trunk.any(axis=-1)), np.asarray(hidden)
+
+
+def covered(crowd: Crowd) -> Array:
+    """How far somebody nearer stands before each of people [P, F, K], by where their chests are in the
+    picture: 0 for side by side, 1 for straight behind."""
+    return _lapped(crowd, _nearer(crowd), TRUNK)
+
+
+def crowded(crowd: Crowd, there: Bools) -> Array:
+    """How little people who are ``there`` [P, F, K] stand apart from each other in the picture, of those
+    worst off [P, F]: 0 with air between them, 1 for one straight behind another."""
+    others = ~np.eye(there.shape[-1], dtype=bool)
+    pairs = there[..., :, None] & there[..., None, :] & others
+    return np.asarray(_lapped(crowd, pairs, _AIR).max(axis=-1))
+
+
+def _nearer(crowd: Crowd) -> Bools:
+    """Whom [P, F, of these, by those] somebody nearer may stand before."""
+    depth = crowd.depth
+    return np.asarray((depth[..., None, :] < depth[..., :, None]) & (depth[..., None, :] > BEFORE))
+
+
+def _lapped(crowd: Crowd, pairs: Bools, half: float) -> Array:
+    """How far bodies of so many metres to each side lap, by pairs [P, F, K, K]: of each the most."""
+    scale = 1.0 / np.maximum(crowd.depth, BEFORE)  # of metres there
+    wide, high = half * scale, _TALL * scale
+    x, y = crowd.chests[..., 0], crowd.chests[..., 1]
+    beside = np.abs(x[..., :, None] - x[..., None, :]) / (wide[..., :, None] + wide[..., None, :])
+    above = np.abs(y[..., :, None] - y[..., None, :]) / high[..., None, :]
+    over = np.clip(1.0 - beside, 0.0, 1.0) * np.clip(1.0 - above, 0.0, 1.0) * pairs
+    return np.asarray(over.max(axis=-1))

@@ -122,6 +122,18 @@ def test_an_arm_before_the_face_counts_where_another_side_shows_it() -> None:
     assert (face_covered(takes, replace(plain, arms=None), at, camera) == 0.0).all()
 
 
+def test_a_face_looked_at_from_below_may_be_behind_the_chest() -> None:
+    act, cameras = filmed("(anna clap)", "static close-up eye-level")
+    told = tell(act.state, act.line, act.filming, shot=act.line.shots[0]).proposals[0]
+    subject = subject_of(act.line.shots[0], told, act.filming)
+    at = np.array([0])
+    takes = Takes(cameras[0].track, (), np.ones((3, 1), bool), np.zeros(3, np.int64), 0.0, False, ())
+    on_floor = subject.position[at] + (0.0, 0.0, 0.3)
+    ahead = subject.face[at] * (1.0, 1.0, 0.0)
+    camera = np.stack([on_floor + away * ahead for away in (0.2, 2.0, -2.0)])
+    np.testing.assert_allclose(face_covered(takes, subject, at, camera), (1.0, 0.0, 0.0))
+
+
 def test_who_guards_the_face_is_filmed_from_where_it_is_seen() -> None:
     _, cameras = filmed("(anna do yoga)", "static medium eye-level")
     covered = np.array([c.measures["face_covered"] for c in cameras])

@@ -21,6 +21,8 @@ _CHEST = 0.075  # half of the trunk's breadth, of the standing height
 _WITHIN, _PLAIN = 0.06, 0.24
 #: Of an arm: its radius, and what a hand reaches beyond the wrist, of the standing height.
 _ARM, _HAND = 0.026, 0.075
+#: How deep half a trunk is, of the standing height.
+_TRUNK = 0.075
 #: Metres before the face at which a line of sight ends: less is the skin itself.
 _SKIN = 0.02
 #: Directions to the sides of where a face points, radians, and metres from it, from which one tells how
@@ -121,9 +123,9 @@ def _off(point: Array, begin: Array, end: Array) -> Array:
 
 
 def face_covered(takes: Takes, subject: Subject, at: NDArray[np.int64], camera: Array) -> Array:
-    """Share [P] of a person's face, while the window is open, that their own arms and hands hide, or what
-    these hold, beyond what they hide from everywhere before it: who buries the face in the hands cannot be
-    seen otherwise.
+    """Share [P] of a person's face, while the window is open, that their own arms and hands hide, what these
+    hold, or, looked at from below, their chest, beyond what they hide from everywhere before it: who buries
+    the face in the hands cannot be seen otherwise.
 
     Asked of eyes and nose. 0 for what is no person.
     """
@@ -136,8 +138,11 @@ def face_covered(takes: Takes, subject: Subject, at: NDArray[np.int64], camera: 
     level = np.stack([*around, np.broadcast_to(face[:, 2], around[0].shape)], axis=-1)
     before = points[:, 0] + _AWAY * level
 
+    chest = subject.landmarks["waist"][at], subject.landmarks["pocket"][at]
+
     def hidden_from(camera: Array) -> Array:
         behind = _behind_arms(camera, points, arms, subject.height)
+        behind |= _behind_chest(camera, points, face, *chest, subject.height)
         for box in subject.in_hand:
             behind |= box.before(at, camera, points, _SKIN)
         return np.asarray(behind.mean(axis=-1))
@@ -157,6 +162,16 @@ def _behind_arms(camera: Array, points: Array, arms: Array, height: float) -> Bo
     rays = rays * np.maximum(1.0 - _SKIN / np.maximum(length(rays), 1e-6), 0.0)[..., None]
     away = _apart(camera[:, :, None, None], rays[..., None, :], begins, limbs)
     return np.asarray((away < _ARM * height).any(axis=-1))
+
+
+def _behind_chest(
+    camera: Array, points: Array, face: Array, waist: Array, chest: Array, height: float
+) -> Bools:
+    """Which of points [F, K, 3] of a face that is turned to cameras [P, F, 3] the own trunk hides, from waist
+    [F, 3] to chest [F, 3]: [P, F, K]."""
+    rays = points - camera[:, :, None]
+    away = _apart(camera[:, :, None], rays, waist[:, None], (chest - waist)[:, None])
+    return np.asarray((away < _TRUNK * height) & (dot(rays, face[:, None]) < 0.0))
 
 
 def _apart(camera: Array, ray: Array, begin: Array, limb: Array) -> Array:

@@ -9,16 +9,16 @@ from numpy.typing import NDArray
 
 #: What counts, and how much; the weights sum to one.
 WEIGHTS = {
-    "visibility": 0.14,
-    "in_frame": 0.14,
-    "face": 0.19,
-    "interest": 0.11,
-    "size": 0.08,
-    "headroom": 0.08,
-    "lead_room": 0.06,
+    "visibility": 0.16,
+    "in_frame": 0.12,
+    "face": 0.28,
+    "interest": 0.17,
+    "size": 0.06,
+    "headroom": 0.04,
+    "lead_room": 0.03,
     "thirds": 0.06,
-    "clearance": 0.06,
-    "steadiness": 0.08,
+    "clearance": 0.03,
+    "steadiness": 0.05,
 }
 
 #: Measures of what spoils a picture, and the share of the score each takes away where it is 1.

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import argparse
 import json
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -49,17 +49,21 @@ def blind(out: Path, lines: int, weights: Path | None = None, seed: int = 0, dev
         sides = [chosen, other] if rng.random() < 0.5 else [other, chosen]
         for letter, i in zip("AB", sides, strict=True):
             cells.append(
-                (f"{number} {letter}", shown.shot, _strip(camerawork, scene, shown, shown.cameras[i]))
+                (f"{number} {letter}", shown.shot, strip(camerawork, scene, shown, shown.cameras[i]))
             )
         said = {"line": number, "shot": shown.shot, "place": scene.place, "chosen": "AB"[sides.index(chosen)]}
         key.append(said | {"scores": [round(scored.known[i], 4) for i in sides]})
         print(number, shown.shot, flush=True)
-    for begin in range(0, len(cells), 2 * _ROWS):
-        path = out / f"sheet-{begin // (2 * _ROWS) + 1}.png"
-        grid(cells[begin : begin + 2 * _ROWS], 2).save(path)
+    sheets_of(cells, out)
     path = out / "key.json"
     path.write_text(json.dumps(key, indent=1) + "\n", "utf-8")
     return path
+
+
+def sheets_of(cells: Sequence[tuple[str, str, Image.Image]], out: Path) -> None:
+    """Write pairs of strips, each with what is said below it, ten to a sheet."""
+    for begin in range(0, len(cells), 2 * _ROWS):
+        grid(cells[begin : begin + 2 * _ROWS], 2).save(out / f"sheet-{begin // (2 * _ROWS) + 1}.png")
 
 
 def held_out_lines(
@@ -96,7 +100,7 @@ def _first(scored: Scored, camerawork: Camerawork, scene: Scene, shown: Proposal
             return first
 
 
-def _strip(camerawork: Camerawork, scene: Scene, shown: ProposalGrid, camera: CameraProposal) -> Image.Image:
+def strip(camerawork: Camerawork, scene: Scene, shown: ProposalGrid, camera: CameraProposal) -> Image.Image:
     """Three frames of a take, side by side."""
     story = next(s for s in shown.story if s.index == camera.story)
     at = np.round(np.array(_AT) * (story.frames - 1)).astype(int)

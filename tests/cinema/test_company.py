@@ -110,7 +110,11 @@ def test_people_are_best_shown_with_air_between_them() -> None:
 def test_feet_of_people_in_a_place_are_best_in_the_picture() -> None:
     whole, cut = (in_a_place(two((0.0, 1.6)), (x, 0.8, 1.5)) for x in (5.5, 2.6))
     assert whole["company_cut"] < 1e-9
-    assert 0.2 < cut["company_cut"] <= 0.25
+    assert 0.25 < cut["company_cut"] <= 0.3
+    beside = two((0.0, 0.9))
+    wide = takes_of("full", "person", (3.0, 0.0, 1.5), (0.0, 0.0, 1.3))
+    full = measure(wide, subject_of(shot(scale="full"), beside, FILMING), FILMING.world, 24.0).values
+    assert full["company_cut"] > 0.25, "a size that shows the whole"
 
 
 def test_those_a_view_is_of_are_no_company() -> None:

@@ -16,15 +16,15 @@ from .composition import broken
 from .covering import BEFORE, TRUNK, Crowd, behind_bodies, behind_heads, covered, crowd_of, crowded
 from .framing import Array
 from .subject import SIGHT, Subject
-from .takes import Bools, Picture, Takes, mean_of, pictured, turned, visibility, within
+from .takes import Bools, Picture, Takes, mean_of, pictured, remembered, turned, visibility, within
 from .together import turned_among
 from .track import project
 
 #: One who is nearer than the subject counts in full, one so many times as far away hardly any more.
 _FAR = 6.0
 #: What the last frame adds; what somebody counts who has a head and is halved by a side of the frame; who
-#: stands before another in the picture, or without air between them; and who in a place is cut below.
-_ENDS, _HALF, _CROWDED, _FOOTLESS = 0.3, 0.5, 0.45, 0.25
+#: stands before another in the picture, or without air between them; and who is cut below and should not.
+_ENDS, _HALF, _CROWDED, _FOOTLESS = 0.3, 0.5, 0.45, 0.3
 #: Share of a trunk's breadth behind somebody nearer from which on nothing is left of it to see.
 _GONE = 0.85
 #: Cosine between a face and the direction to the camera below which one sees the back of a head.
@@ -54,7 +54,7 @@ def company_cut(
     out of the frame, or somebody else or a thing is before it; and more by :data:`_ENDS` where the last frame
     is such a one: it is what is remembered of a take. Who is halved by a side of the frame or by a thing,
     head and all, counts for :data:`_HALF` of that, two without air between them for up to :data:`_CROWDED`,
-    and in a place whose feet are below the frame for :data:`_FOOTLESS`.
+    and whose feet are below the frame of a place, or of a size that shows the whole, for :data:`_FOOTLESS`.
 
     seen_from: which of points [F, K, 3] no wall or thing hides, bool [P, F, K]
     """
@@ -79,8 +79,9 @@ def company_cut(
     halves = np.maximum(out, halves)
     halved = _HALF * np.minimum(halves.mean(axis=1) + _ENDS * halves[:, -1], 1.0)
     ugly = np.maximum(halved, _CROWDED * np.maximum(lapped.mean(axis=1), lapped[:, -1]))
-    if subject.kind == "place":
-        ugly = np.maximum(ugly, _FOOTLESS * _footless(takes, subject, at, camera, axes, there).mean(axis=1))
+    whole = subject.kind == "place" or np.array([size.lower == "feet" for size in takes.sizes])
+    feet = _FOOTLESS * whole * _footless(takes, (*asked, *subject.company), at, camera, axes, there)
+    ugly = np.maximum(ugly, feet)
     return np.asarray(np.clip(np.maximum(cut, ugly), 0.0, 1.0))
 
 
@@ -117,13 +118,15 @@ def _beside_it(
 
 
 def _footless(
-    takes: Takes, subject: Subject, at: NDArray[np.int64], camera: Array, axes: Array, there: Bools
+    takes: Takes, people: tuple[Subject, ...], at: NDArray[np.int64], camera: Array, axes: Array, there: Bools
 ) -> Array:
-    """Share [P, F] of those who are in the picture whose feet are below it."""
-    feet = np.stack([one.landmarks["feet"][at] for one in subject.company], axis=1)
+    """Of people [K] who are in the picture [P, F, K], the share whose feet are below it, [P]: all the time,
+    or in the last frame where that is more."""
+    feet = np.stack([one.landmarks["feet"][at] for one in people], axis=1)
     xy, depth = project(feet[None], camera, axes, takes.track.focal[:, at], takes.track.sensor)
     below = there & ((xy[..., 1] > 1.0) | (depth < BEFORE))
-    return np.asarray(below.sum(axis=-1) / np.maximum(there.sum(axis=-1), 1))
+    share = below.sum(axis=-1) / np.maximum(there.sum(axis=-1), 1)
+    return np.asarray(np.maximum(share.mean(axis=1), share[:, -1]))
 
 
 def _in_frame(takes: Takes, crowd: Crowd, at: NDArray[np.int64]) -> Bools:
@@ -170,7 +173,7 @@ def company_shown(
     stays = here.sum(axis=0) / max(int(here.sum(axis=0).max(initial=0)), 1)
     sight: dict[str, Array] = {}
     for k, one in enumerate(people):
-        faces += mean_of(turned_among(one, at, camera), takes.window & here[:, k]) / len(people)
+        faces += remembered(turned_among(one, at, camera), takes.window & here[:, k]) / len(people)
         found = pictured(takes, one, at, camera, axes)
         own = replace(takes, window=takes.window & here[:, k])
         for name, value in _sight(own, one, at, found, seen_from).items():

@@ -23,7 +23,7 @@ from .gestures import act_missed, at_work, face_covered, gesture_lost, hands_mis
 from .score import geometry_score as geometry_score
 from .sight import backdrop_gaps, clear_lines, clear_of_people, hidden_walls
 from .subject import SIGHT, Subject
-from .takes import Bools, Picture, Takes, key_sample, mean_of, samples, turned, visibility, within
+from .takes import Bools, Picture, Takes, key_sample, mean_of, remembered, samples, turned, visibility, within
 from .together import everybody_measured, everybody_seen
 from .track import CameraTrack, camera_axes, project
 from .vectors import dot, length
@@ -58,7 +58,8 @@ MEASURES = (
     # more where the last frame is such a one
     "foreground",  # share of the picture covered by something much nearer than the subject, or ENDS_BEHIND
     # of the share in the last frame where that is more
-    "face",  # cosine between face and direction to the camera: 1 frontal, 0 profile, −1 from behind
+    "face",  # cosine between face and direction to the camera: 1 frontal, 0 profile, −1 from behind; a mean,
+    # the last frame for more
     "clearance",  # metres from the camera to the nearest solid or person, at most 1
     "speed",  # metres a second, the greatest
     "angular_speed",  # degrees a second, the greatest
@@ -145,7 +146,7 @@ def measure(takes: Takes, subject: Subject, world: World, fps: float) -> Measure
     looks = _ALL_OVER if subject.kind == "place" else _ASIDE
     values["foreground"] = _foreground(takes, world, at, camera, axes, picture, hidden, looks)
     values |= _motion(track, takes.roll, fps)
-    values["face"] = mean_of(turned(subject, at, camera), takes.window)
+    values["face"] = remembered(turned(subject, at, camera), takes.window)
     if len(subject.members) > 1:
         values |= everybody_measured(takes, subject, at, camera, axes, seen_from)
     if subject.kind == "place":  # nobody misses the edges of the box that stands for it

@@ -20,6 +20,7 @@ Bools = NDArray[np.bool_]
 
 #: Frames of a take that are looked at, at most: as many as the ranker is shown, and the same ones.
 SAMPLES = 8
+_ENDS = 0.35
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,6 +83,13 @@ def turned(one: Subject, at: NDArray[np.int64], camera: Array) -> Array:
 def mean_of(values: Array | Bools, window: Bools) -> Array:
     """Mean over the window's frames: [P, F] -> [P]."""
     return np.asarray((values * window).sum(axis=1) / np.maximum(window.sum(axis=1), 1))
+
+
+def remembered(values: Array | Bools, window: Bools) -> Array:
+    """The same, the last frame counting for :data:`_ENDS` where it is one of the window: it is what is left
+    of a take when the next one begins."""
+    mean = mean_of(values, window)
+    return np.asarray(np.where(window[:, -1], (1.0 - _ENDS) * mean + _ENDS * values[:, -1], mean))
 
 
 def key_sample(takes: Takes, at: NDArray[np.int64]) -> NDArray[np.int64]:

@@ -18,7 +18,7 @@ from .framing import Array
 from .gestures import act_missed, face_covered, gesture_lost, hands_missed
 from .sight import clear_of_people
 from .subject import SIGHT, Subject
-from .takes import Bools, Takes, mean_of, pictured, turned, visibility, within
+from .takes import Bools, Takes, mean_of, pictured, remembered, turned, visibility, within
 from .track import project
 from .vectors import dot, length
 
@@ -128,5 +128,5 @@ def _faces(takes: Takes, subject: Subject, at: NDArray[np.int64], camera: Array)
     total = np.zeros(len(camera))
     for i, one in enumerate(subject.members):
         share = _WHO_ACTS if i == 0 else (1.0 - _WHO_ACTS) / max(len(subject.members) - 1, 1)
-        total += share * mean_of(turned_among(one, at, camera), takes.window)
+        total += share * remembered(turned_among(one, at, camera), takes.window)
     return total

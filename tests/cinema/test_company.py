@@ -92,6 +92,32 @@ def test_a_head_behind_somebody_or_something_is_none() -> None:
     assert measured(two((0.0, 0.8)), (3.5, 0.0, 1.4), (0.0, 0.0, 1.3), lamp) > 0.9
 
 
+def test_who_is_behind_the_camera_or_beside_one_from_above_hides_nobody() -> None:
+    eye, aim = (2.5, 0.0, 1.4), (0.0, 0.0, 1.3)
+    three = two((0.0, 0.9))
+    behind = standing(BODY, np.tile((4.0, 0.3, 0.0), (FRAMES, 1)), np.zeros(FRAMES))
+    told = replace(three, performances=three.performances | {"carla": behind})
+    filming = replace(FILMING, skeletons=FILMING.skeletons | {"carla": BODY})
+    subject = subject_of(shot(scale="medium-close-up"), told, filming)
+    assert len(subject.company) == 2
+    takes = takes_of("medium-close-up", "person", eye, aim)
+    assert measure(takes, subject, FILMING.world, 24.0).values["company_cut"] < 0.1
+    taller = measured(two((-1.0, 0.0)), (0.1, 0.0, 6.0), (0.0, 0.0, 1.0))
+    assert taller < 0.1, "from overhead he lies below her in the picture, a metre away"
+
+
+def test_a_head_that_looks_out_over_somebody_is_without_air() -> None:
+    """Ben stands on something behind Anna."""
+    told = two((-1.0, 0.0))
+    ben = told.performances["ben"]
+    up = np.array((0.0, 0.0, 0.45))
+    matrices = ben.world_from_joint.copy()
+    matrices[..., :3, 3] += up
+    raised = replace(ben, world_from_joint=matrices, position=ben.position + up)
+    over = replace(told, performances=told.performances | {"ben": raised})
+    assert 0.2 < measured(over, (3.5, 0.0, 1.4), (0.0, 0.0, 1.4)) <= 0.5
+
+
 def test_somebody_a_thing_halves_is_ugly_and_no_fault() -> None:
     post = world(boxes=((1.0, 0.65, 1.0, 0.05, 0.12, 1.0, 0.0),))  # before one side of Ben
     whole = measured(two((0.0, 1.1)), (3.5, 0.0, 1.4), (0.0, 0.0, 1.3))

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from filmset import SPAN, shot, skeleton, standing, story, world
 
-from vdsl.cinema.together import behind_heads
+from vdsl.cinema.covering import behind_heads
 from vdsl.cinema.track import camera_axes
 from vdsl.lang.ir import Target
 from vdsl.propose.cameras import Filming, propose_cameras
@@ -45,6 +45,9 @@ def test_a_head_behind_a_nearer_one_is_not_seen() -> None:
     for far, hidden in (((0.0, 0.0), True), ((0.2, 0.0), False), ((0.0, 0.3), True), ((0.0, -0.2), False)):
         xy = np.array([[[(0.0, 0.0), far]]])
         assert behind_heads(xy, depth).tolist() == [[[False, hidden]]], far
+        assert not behind_heads(xy, -depth[..., ::-1] * (1, -1)).any(), (
+            "who is behind the camera hides nobody"
+        )
 
 
 def test_a_two_shot_shows_both_at_its_first_frame_and_its_last() -> None:

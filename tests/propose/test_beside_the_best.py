@@ -12,7 +12,7 @@ from filmset import shot, skeleton, still_story, world
 from vdsl.cinema.flaws import flaws
 from vdsl.propose import cameras as proposing
 from vdsl.propose.cameras import Filming, propose_cameras
-from vdsl.propose.drawing import draw, generator, near
+from vdsl.propose.drawing import draw, generator, near, nudged
 from vdsl.propose.types import ProposalGrid
 
 BODY = skeleton()
@@ -77,3 +77,14 @@ def test_who_is_not_seen_at_all_is_not_let_back_in() -> None:
     grid = propose_cameras(shot("static", "full"), [still_story(BODY)], filming)
     assert grid.rejected["subject_hidden"] > 100
     assert grid.cameras == ()
+
+
+def test_what_was_drawn_from_all_around_is_not_nudged_farther() -> None:
+    """Half way to the next azimuth is as far as there is a way to go."""
+    rng = np.random.default_rng(2)
+    asked = shot("push", "wide", proposals=20)
+    usual, around = draw(asked, 1, 200, rng), draw(asked, 1, 200, rng, all_around=True)
+    widest = np.abs(around.jitter - 0.5).max()
+    assert np.abs(usual.jitter - 0.5).max() <= 0.5 < widest
+    assert np.abs(nudged(around, rng, True).jitter - 0.5).max() == widest
+    assert 0.5 < np.abs(nudged(usual, rng, True).jitter - 0.5).max() <= 22.5 / 18.0

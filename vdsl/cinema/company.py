@@ -65,15 +65,16 @@ def company_cut(
     own = np.maximum(picture.depth[:, :, picture.names.index("pocket")], BEFORE)
     crowd = crowd_of(takes, (*asked, *subject.company), at, camera, axes)
     headless, behind = behind_bodies(crowd)
-    there = np.zeros(crowd.depth.shape, bool)
+    there = np.zeros(crowd.depth.shape)  # how much each counts who is to be seen
     there[..., : len(asked)] = _in_frame(takes, crowd, at)[..., : len(asked)]
     for k, one in enumerate(subject.company, len(asked)):
-        body, head, split, far = _beside_it(takes, one, at, camera, axes, seen_from, behind[..., k] < _GONE)
+        body, head, split, far = _beside_it(takes, one, at, camera, axes, seen_from)
         head &= ~headless[..., k]
         near = np.clip((_FAR - far / own) / (_FAR - 1.0), 0.0, 1.0)
+        there[..., k] = (body & (head | (behind[..., k] < _GONE))) * near
+        body &= behind[..., k] < _GONE
         out = np.maximum(out, (body & ~head) * near)
         halves = np.maximum(halves, (body & head) * near * split)
-        there[..., k] = body
     lapped = crowded(crowd, there)
     cut = out.mean(axis=1) + _ENDS * out[:, -1]
     halves = np.maximum(out, halves)
@@ -92,11 +93,10 @@ def _beside_it(
     camera: Array,
     axes: Array,
     seen_from: Callable[[Array], Bools],
-    stands_out: Bools,
 ) -> tuple[Bools, Bools, Array, Array]:
     """Of somebody beside a subject, [P, F] each: whether some of the body is in the picture, and of the head,
-    how much the frame or a thing halves the body, 0..1, and how far away it is. stands_out: [P, F], where
-    people leave something of the body to see"""
+    whoever may stand before them, how much the frame or a thing halves the body, 0..1, and how far away it
+    is."""
     marks = ("eyes", "chin", "crown", "pocket", "waist")
     points = np.stack([one.landmarks[name][at] for name in marks], axis=1)
     xy, depth = project(points[None], camera, axes, takes.track.focal[:, at], takes.track.sensor)
@@ -105,7 +105,7 @@ def _beside_it(
     inside = _beside(xy[:, :, :3], depth[:, :, :3], _HEAD_HALF * wide)
     # a face may be cut above the brow; without one, what is left of a head is not told from a collar
     head = inside[:, :, :2].all(axis=2) & (inside[:, :, 2] | (turned(one, at, camera) > _FACELESS))
-    body = _beside(xy[:, :, 3:], depth[:, :, 3:], TRUNK * wide).any(axis=2) & (far > BEFORE) & stands_out
+    body = _beside(xy[:, :, 3:], depth[:, :, 3:], TRUNK * wide).any(axis=2) & (far > BEFORE)
     if not body.any():
         return body, head, np.zeros(far.shape), far
     aside = _SIDE * axes[:, :, None, 0]  # to the picture's right
@@ -118,14 +118,14 @@ def _beside_it(
 
 
 def _footless(
-    takes: Takes, people: tuple[Subject, ...], at: NDArray[np.int64], camera: Array, axes: Array, there: Bools
+    takes: Takes, people: tuple[Subject, ...], at: NDArray[np.int64], camera: Array, axes: Array, there: Array
 ) -> Array:
-    """Of people [K] who are in the picture [P, F, K], the share whose feet are below it, [P]: all the time,
-    or in the last frame where that is more."""
+    """Of people [K] who count so much in the picture [P, F, K], the share whose feet are below it, [P]: all
+    the time, or in the last frame where that is more."""
     feet = np.stack([one.landmarks["feet"][at] for one in people], axis=1)
     xy, depth = project(feet[None], camera, axes, takes.track.focal[:, at], takes.track.sensor)
-    below = there & ((xy[..., 1] > 1.0) | (depth < BEFORE))
-    share = below.sum(axis=-1) / np.maximum(there.sum(axis=-1), 1)
+    below = there * ((xy[..., 1] > 1.0) | (depth < BEFORE))
+    share = below.sum(axis=-1) / np.maximum(there.sum(axis=-1), 1.0)
     return np.asarray(np.maximum(share.mean(axis=1), share[:, -1]))
 
 
@@ -165,7 +165,7 @@ def company_shown(
     crowd = crowd_of(takes, people, at, camera, axes)
     eyes = np.stack([one.landmarks["eyes"][at] for one in people], axis=1)
     xy, depth = project(eyes[None], camera, axes, focal, takes.track.sensor)
-    seen = within(xy, depth, _EDGE) & seen_from(eyes) & ~behind_heads(crowd.eyes, depth)
+    seen = within(xy, depth, _EDGE) & seen_from(eyes) & ~behind_heads(crowd.eyes, depth, crowd.feet)
     apart = 1.0 - _COVERED * covered(crowd)
     counts = here.sum(axis=1)
     share = np.where(counts > 0, (seen * apart * here).sum(axis=2) / np.maximum(counts, 1), 1.0)

@@ -21,18 +21,21 @@ BEFORE = 0.2
 _HEAD = 0.11  # half a head's width and its hair, metres
 #: Half the width of a trunk, and of one with its arms and some air beside it, metres.
 TRUNK, _AIR = 0.18, 0.42
-#: Metres between the chests of two of whom none covers the other, one above the other in the picture.
-_TALL = 1.1
+#: Of the length of a body in the picture, how far the chests of two are apart of whom none covers the other,
+#: one above the other; and the least of that, metres, as from overhead.
+_TALL, _FLAT = 0.65, 0.4
 
 
 @dataclass(frozen=True, eq=False)
 class Crowd:
     """K people in the pictures of P takes: [P, F, K, 2] each, as :func:`spread` has them; depth: of their
-    chests, [P, F, K]."""
+    chests, head: of their eyes, [P, F, K]."""
 
     eyes: Array
     crowns: Array
+    feet: Array
     chests: Array
+    head: Array
     depth: Array
 
 
@@ -41,12 +44,13 @@ def crowd_of(
 ) -> Crowd:
     """Where people are in the pictures of the frames ``at``."""
     focal = takes.track.focal[:, at]
-    found = []
-    for name in ("eyes", "crown", "pocket"):
+    found, depths = [], []
+    for name in ("eyes", "crown", "feet", "pocket"):
         points = np.stack([one.landmarks[name][at] for one in people], axis=1)
         xy, depth = project(points[None], camera, axes, focal, takes.track.sensor)
         found.append(spread(xy, focal, takes.track.sensor))
-    return Crowd(found[0], found[1], found[2], depth)
+        depths.append(depth)
+    return Crowd(found[0], found[1], found[2], found[3], depths[0], depths[3])
 
 
 def spread(xy: Array, focal: Array, sensor: tuple[float, float]) -> Array:
@@ -54,13 +58,16 @@ def spread(xy: Array, focal: Array, sensor: tuple[float, float]) -> Array:
     return np.asarray(xy * (np.array(sensor) / focal[..., None])[:, :, None])
 
 
-def behind_heads(xy: Array, depth: Array) -> Bools:
+def behind_heads(xy: Array, depth: Array, feet: Array | None = None) -> Bools:
     """Which heads are behind another one, or behind its shoulders: [P, F, K]. xy: [P, F, K, 2], metres aside
-    and down at a metre's distance; depth: [P, F, K]."""
+    and down at a metre's distance; depth: [P, F, K]; feet: [P, F, K, 2], how far down each one's body goes,
+    None for all the way"""
     wide = _HEAD / np.maximum(depth, 0.1)
     aside = np.abs(xy[..., :, None, 0] - xy[..., None, :, 0])  # [P, F, of this head, by that one]
     over = xy[..., None, :, 1] - xy[..., :, None, 1]
-    nearer = depth[..., None, :] < depth[..., :, None] - 0.1
+    nearer = (depth[..., None, :] < depth[..., :, None] - 0.1) & (depth[..., None, :] > BEFORE)
+    if feet is not None:
+        nearer &= feet[..., None, :, 1] > xy[..., :, None, 1]
     covered = nearer & (aside < wide[..., None, :] + 0.5 * wide[..., :, None]) & (over < wide[..., None, :])
     return np.asarray(covered.any(axis=-1))
 
@@ -75,11 +82,14 @@ def behind_bodies(crowd: Crowd) -> tuple[Bools, Array]:
     last, first = high[..., :, None], low[..., :, None]
     both = np.minimum(last, high[..., None, :]) - np.maximum(first, low[..., None, :])
     share = np.clip(both / (2.0 * half[..., :, None]), 0.0, 1.0)
-    hidden = (share * (nearer & (top[..., None, :] < y[..., :, None]))).max(axis=-1)
+    ends = crowd.feet[..., None, :, 1]
+    over = nearer & (top[..., None, :] < y[..., :, None]) & (ends > y[..., :, None])
+    hidden = (share * over).max(axis=-1)
     eyes = crowd.eyes
-    aside = np.abs(eyes[..., :, None, 0] - x[..., None, :])
-    trunk = nearer & (aside < half[..., None, :]) & (y[..., None, :] < eyes[..., :, None, 1])
-    return np.asarray(behind_heads(eyes, crowd.depth) | trunk.any(axis=-1)), np.asarray(hidden)
+    aside, high = np.abs(eyes[..., :, None, 0] - x[..., None, :]), eyes[..., :, None, 1]
+    trunk = nearer & (aside < half[..., None, :]) & (y[..., None, :] < high) & (ends > high)
+    headless = behind_heads(eyes, crowd.head, crowd.feet) | trunk.any(axis=-1)
+    return np.asarray(headless), np.asarray(hidden)
 
 
 def covered(crowd: Crowd) -> Array:
@@ -88,11 +98,12 @@ def covered(crowd: Crowd) -> Array:
     return _lapped(crowd, _nearer(crowd), TRUNK)
 
 
-def crowded(crowd: Crowd, there: Bools) -> Array:
-    """How little people who are ``there`` [P, F, K] stand apart from each other in the picture, of those
-    worst off [P, F]: 0 with air between them, 1 for one straight behind another."""
+def crowded(crowd: Crowd, there: Array) -> Array:
+    """How little people stand apart from each other in the picture, of those worst off [P, F]: 0 with air
+    between them, 1 for one straight behind another, over whom the head still looks out. there: [P, F, K], how
+    much each counts, 0 for who is not to be seen"""
     others = ~np.eye(there.shape[-1], dtype=bool)
-    pairs = there[..., :, None] & there[..., None, :] & others
+    pairs = np.minimum(there[..., :, None], there[..., None, :]) * others
     return np.asarray(_lapped(crowd, pairs, _AIR).max(axis=-1))
 
 
@@ -102,10 +113,11 @@ def _nearer(crowd: Crowd) -> Bools:
     return np.asarray((depth[..., None, :] < depth[..., :, None]) & (depth[..., None, :] > BEFORE))
 
 
-def _lapped(crowd: Crowd, pairs: Bools, half: float) -> Array:
+def _lapped(crowd: Crowd, pairs: Array | Bools, half: float) -> Array:
     """How far bodies of so many metres to each side lap, by pairs [P, F, K, K]: of each the most."""
     scale = 1.0 / np.maximum(crowd.depth, BEFORE)  # of metres there
-    wide, high = half * scale, _TALL * scale
+    long = np.abs(crowd.feet[..., 1] - crowd.crowns[..., 1])
+    wide, high = half * scale, np.maximum(_TALL * long, _FLAT * scale)
     x, y = crowd.chests[..., 0], crowd.chests[..., 1]
     beside = np.abs(x[..., :, None] - x[..., None, :]) / (wide[..., :, None] + wide[..., None, :])
     above = np.abs(y[..., :, None] - y[..., None, :]) / high[..., None, :]

@@ -21,8 +21,6 @@ _CHEST = 0.075  # half of the trunk's breadth, of the standing height
 _WITHIN, _PLAIN = 0.06, 0.24
 #: Of an arm: its radius, and what a hand reaches beyond the wrist, of the standing height.
 _ARM, _HAND = 0.026, 0.075
-#: How deep half a trunk is, of the standing height.
-_TRUNK = 0.075
 #: Metres before the face at which a line of sight ends: less is the skin itself.
 _SKIN = 0.02
 #: Directions to the sides of where a face points, radians, and metres from it, from which one tells how
@@ -171,7 +169,7 @@ def _behind_chest(
     [F, 3] to chest [F, 3]: [P, F, K]."""
     rays = points - camera[:, :, None]
     away = _apart(camera[:, :, None], rays, waist[:, None], (chest - waist)[:, None])
-    return np.asarray((away < _TRUNK * height) & (dot(rays, face[:, None]) < 0.0))
+    return np.asarray((away < _CHEST * height) & (dot(rays, face[:, None]) < 0.0))
 
 
 def _apart(camera: Array, ray: Array, begin: Array, limb: Array) -> Array:

@@ -103,7 +103,7 @@ def subspace(
     view: str = "",
     place: bool = False,
 ) -> Subspace:
-    """Of a movement, or of two at once (``push+pan-left``). place: of a shot in which nobody acts
+    """Of a movement, or of two at once (``push+pan-left``). place: whose subject is a place
 
     lens: the line's range in mm; lam: its choices of λ; view: over a shoulder and through eyes, where the
     camera stands and with which lens follows from the two people

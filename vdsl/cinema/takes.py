@@ -20,6 +20,7 @@ Bools = NDArray[np.bool_]
 
 #: Frames of a take that are looked at, at most: as many as the ranker is shown, and the same ones.
 SAMPLES = 8
+#: How much the last frame counts beside the mean of all, of what is :func:`remembered`.
 _ENDS = 0.35
 
 

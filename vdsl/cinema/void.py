@@ -17,7 +17,7 @@ from .takes import Bools, Takes
 
 #: Where in the lower part of the frame, −1..1, it is looked; y is down.
 _LOOKS = np.array([(x, y) for x in (-0.8, -0.3, 0.3, 0.8) for y in (0.3, 0.65, 0.95)])
-#: Metres that walls are thick; least downward slope of a look.
+#: Metres beside a floor that walls and sills may take; least downward slope of a look.
 _WALL, _DOWN = 0.35, 0.02
 #: How much the last frame counts, were there nothing missing in all others.
 _ENDS = 0.5

@@ -101,7 +101,8 @@ def _show_space(checked: Checked, wanted: str, as_json: bool) -> None:
 
     board = checked.storyboard
     line, shot = next((line, s) for line in board.lines for s in line.shots if s.id == wanted)
-    place = establishes(shot, bool(line.beats))
+    room = shot.focus is not None and shot.focus.kind == "room"
+    place = room or (establishes(shot, bool(line.beats)) and shot.view not in ("two-shot", "group"))
     styles = [(m, s, a) for m in shot.movements for s in shot.scales for a in shot.angles]
     spaces = [(" ".join(x), subspace(*x, shot.lens, shot.ease, board.rig, shot.view, place)) for x in styles]
     if as_json:

@@ -48,20 +48,23 @@ def pairs(out: Path, lines: int, seed: int = 0, device: str = "cpu") -> Path:
 
 
 def two_by_lot(cameras: Sequence[CameraProposal], rng: np.random.Generator) -> tuple[int, int]:
-    """Two proposals that do not look the same, as far as there are such, without a fault if some are."""
+    """Two proposals that do not look the same, of those without a fault where there are :data:`_FEW`, and
+    where such look different."""
     opinion = judged(cameras)
     plain = np.flatnonzero(opinion > 0)
     pool = plain if len(plain) >= _FEW else np.arange(len(cameras))
     first = int(rng.choice(pool))
-    others = [i for i in unlike(cameras, first) if i != first]
+    others = unlike(cameras, first)
     near = [i for i in others if i in pool]
     return first, int(rng.choice(near or others))
 
 
 def agreement(judged_pairs: Sequence[Mapping[str, Any]]) -> float:
     """Share of pairs in which the designer's appeal is greater for the take that the majority of ``votes``
-    ("A", "B" or "=" each) prefers, of those in which there is one."""
+    ("A", "B" or "=" each) prefers, of those in which there is one. Raises ValueError where there is none."""
     rows = [pair for pair in judged_pairs if _majority(pair["votes"])]
+    if not rows:
+        raise ValueError("no pair of which one take has a majority of the votes")
     names = set.intersection(*(set(m) for pair in rows for m in pair["measures"]))
     a, b = (
         appeal({name: np.array([pair["measures"][k][name] for pair in rows], float) for name in names})
@@ -73,8 +76,8 @@ def agreement(judged_pairs: Sequence[Mapping[str, Any]]) -> float:
 
 def _majority(votes: Sequence[str]) -> int:
     """1 for A, −1 for B, 0 for neither."""
-    more = votes.count("A") - votes.count("B")
-    return (more > 0) - (more < 0)
+    a, b = (2 * votes.count(side) > len(votes) for side in "AB")
+    return int(a) - int(b)
 
 
 def main() -> None:

@@ -74,7 +74,7 @@ def propose_cameras(shot: Shot, stories: Sequence[StoryProposal], filming: Filmi
     few = min(_FEW, wanted)
     hard = 1 if shot.focus_to is None else _RACKED
     free = shot.any_lens and filming.rig == "cinema"
-    place = bool(subjects) and subjects[0].kind == "place"  # what stands apart there has no heading
+    place = bool(subjects) and subjects[0].kind == "place"  # which has no heading
 
     def consider(sample: Sample) -> None:
         nonlocal considered

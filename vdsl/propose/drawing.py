@@ -110,7 +110,8 @@ def nudged(sample: Sample, rng: np.random.Generator, free: bool) -> Sample:
     nearer or farther, with shorter lenses; free: also with lenses that films seldom have"""
     count = len(sample.story)
     reach = _NEARER * (_FARTHER / _NEARER) ** rng.random(count)
-    aside = 0.5 + _ASIDE * (sample.jitter - 0.5)
+    around = bool((np.abs(sample.jitter - 0.5) > 0.5).any())  # they were drawn from all around
+    aside = sample.jitter if around else 0.5 + _ASIDE * (sample.jitter - 0.5)
     lens = sample.lens**2
     if free:
         least, most = (math.log(f / FILM[0]) / math.log(FILM[1] / FILM[0]) for f in (_SHORTEST, _LONGEST))

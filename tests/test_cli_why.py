@@ -180,3 +180,16 @@ def test_documented_fields_are_the_fields(folder: Path) -> None:
     assert documented_fields("vds.space/1") == fields(space)
     told = explained(folder / "story.vds", "1", "-b", folder / "out")
     assert documented_fields("vds.why/1") - {"advice.why", "advice.instead", "advice.faulty"} == fields(told)
+
+
+def test_cameras_of_a_place_stand_all_around_it(tmp_path: Path) -> None:
+    (tmp_path / "place.vds").write_text(
+        STORY.partition("(anna wave)")[0] + "/ (static wide)\n/ (static close-up)\n"
+    )
+
+    def aside(line: str) -> float:
+        told = json.loads(vdsc("why", tmp_path / "place.vds", line, "--space", "--json").stdout)
+        return next(float(v["high"]) for v in told["spaces"][0]["free"] if v["symbol"] == "Δφ")
+
+    assert aside("1") == 22.5
+    assert aside("2") == 9.0, "of her"

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .composition import broken
-from .covering import BEFORE, TRUNK, Crowd, behind_bodies, behind_heads, covered, crowd_of, crowded
+from .covering import BEFORE, TRUNK, behind_bodies, behind_heads, covered, crowd_of, crowded
 from .framing import Array
 from .subject import SIGHT, Subject
 from .takes import Bools, Picture, Takes, mean_of, pictured, remembered, turned, visibility, within
@@ -66,7 +66,7 @@ def company_cut(
     crowd = crowd_of(takes, (*asked, *subject.company), at, camera, axes)
     headless, behind = behind_bodies(crowd)
     there = np.zeros(crowd.depth.shape)  # how much each counts who is to be seen
-    there[..., : len(asked)] = _in_frame(takes, crowd, at)[..., : len(asked)]
+    there[..., : len(asked)] = crowd.inside[..., : len(asked)]
     for k, one in enumerate(subject.company, len(asked)):
         body, head, split, far = _beside_it(takes, one, at, camera, axes, seen_from)
         head &= ~headless[..., k]
@@ -127,12 +127,6 @@ def _footless(
     below = there * ((xy[..., 1] > 1.0) | (depth < BEFORE))
     share = below.sum(axis=-1) / np.maximum(there.sum(axis=-1), 1.0)
     return np.asarray(np.maximum(share.mean(axis=1), share[:, -1]))
-
-
-def _in_frame(takes: Takes, crowd: Crowd, at: NDArray[np.int64]) -> Bools:
-    """Whose chests are in the frame, [P, F, K]."""
-    half = (np.array(takes.track.sensor) / takes.track.focal[:, at][..., None])[:, :, None]
-    return within(crowd.chests / half, crowd.depth, 0.0)
 
 
 def _halved(x: Array, half: Array) -> Array:

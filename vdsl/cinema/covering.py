@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from .framing import Array
 from .subject import Subject
-from .takes import Bools, Takes
+from .takes import Bools, Takes, within
 from .track import project
 
 #: Metres before the camera from which on somebody is in its picture.
@@ -29,7 +29,7 @@ _TALL, _FLAT = 0.65, 0.4
 @dataclass(frozen=True, eq=False)
 class Crowd:
     """K people in the pictures of P takes: [P, F, K, 2] each, as :func:`spread` has them; depth: of their
-    chests, head: of their eyes, [P, F, K]."""
+    chests, head: of their eyes, [P, F, K]; inside: [P, F, K], whose chests are in the frame."""
 
     eyes: Array
     crowns: Array
@@ -37,6 +37,7 @@ class Crowd:
     chests: Array
     head: Array
     depth: Array
+    inside: Bools
 
 
 def crowd_of(
@@ -50,7 +51,7 @@ def crowd_of(
         xy, depth = project(points[None], camera, axes, focal, takes.track.sensor)
         found.append(spread(xy, focal, takes.track.sensor))
         depths.append(depth)
-    return Crowd(found[0], found[1], found[2], found[3], depths[0], depths[3])
+    return Crowd(found[0], found[1], found[2], found[3], depths[0], depth, within(xy, depth, 0.0))
 
 
 def spread(xy: Array, focal: Array, sensor: tuple[float, float]) -> Array:

@@ -97,12 +97,11 @@ def _facts(checked: Checked, wanted: str, file: Path, build: Path | None, fresh:
 def _show_space(checked: Checked, wanted: str, as_json: bool) -> None:
     """What is fixed and what is free, for every style the shot may have."""
     from ..cinema.subspaces import subspace
-    from ..propose.subjects import establishes
+    from ..propose.subjects import films_place
 
     board = checked.storyboard
     line, shot = next((line, s) for line in board.lines for s in line.shots if s.id == wanted)
-    room = shot.focus is not None and shot.focus.kind == "room"
-    place = room or (establishes(shot, bool(line.beats)) and shot.view not in ("two-shot", "group"))
+    place = films_place(shot, bool(line.beats))
     styles = [(m, s, a) for m in shot.movements for s in shot.scales for a in shot.angles]
     spaces = [(" ".join(x), subspace(*x, shot.lens, shot.ease, board.rig, shot.view, place)) for x in styles]
     if as_json:

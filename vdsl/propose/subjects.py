@@ -160,6 +160,13 @@ def establishes(shot: Shot, acted: bool) -> bool:
     return not acted and not named and set(shot.scales) <= {"extreme-wide", "wide", "full"}
 
 
+def films_place(shot: Shot, acted: bool) -> bool:
+    """Whether what a shot is about is a room or an area, as :func:`subject_of` has it."""
+    if shot.view in ("two-shot", "group"):
+        return False
+    return shot.focus is None or shot.focus.kind == "room" or establishes(shot, acted)
+
+
 def find_object(world: World, target: Target) -> WorldObject | None:
     """The object a target names, or the one its spot belongs to: the longest path that matches."""
     paths = {item.path: item for item in world.objects}

@@ -53,7 +53,7 @@ MEASURES = (
     "act_missed",  # share of the way hands go at work on which nothing of the subject is seen
     "hands_missed",  # share of the time hands are at work in which neither is seen; 0 for close-ups
     "gesture_lost",  # how little hands at work stand out from the body in the picture; 0 for close-ups
-    "face_covered",  # share of the face that the subject's own arms hide, or what these hold, and need not
+    "face_covered",  # share of the face that the own arms, what these hold, or the chest hide, and need not
     "company_cut",  # share of the time somebody beside the subject is in the picture without their head, and
     # more where the last frame is such a one
     "foreground",  # share of the picture covered by something much nearer than the subject, or ENDS_BEHIND
@@ -119,11 +119,8 @@ def measure(takes: Takes, subject: Subject, world: World, fps: float) -> Measure
         clear = clear_lines(world.solids, camera, points, hidden, takes.ignore)
         return np.asarray(clear & clear_of_people(camera, points, others))
 
-    def unhidden(points: Array) -> Bools:
-        return clear_lines(world.solids, camera, points, hidden, takes.ignore)
-
-    def unhidden_in(points: Array, some: NDArray[np.int64]) -> Bools:
-        return clear_lines(world.solids, camera[:, some], points, hidden)
+    def unhidden(points: Array, some: NDArray[np.int64] | slice = slice(None)) -> Bools:
+        return clear_lines(world.solids, camera[:, some], points, hidden, takes.ignore)
 
     seen = seen_from(sight)
     values["view"] = everybody_seen(takes, subject, at, camera, axes, seen_from)
@@ -142,7 +139,7 @@ def measure(takes: Takes, subject: Subject, world: World, fps: float) -> Measure
     ends = at_end | shown[:, -1].any(axis=-1)
     values["empty"] = np.minimum(1.0 - somebody.mean(axis=1) + ENDS_EMPTY * ~ends, 1.0)
     values["company_cut"] = company_cut(takes, subject, at, camera, axes, picture, unhidden)
-    values["floor_gap"] = floor_gaps(takes, world, subject.floor, at, camera, axes, unhidden_in)
+    values["floor_gap"] = floor_gaps(takes, world, subject.floor, at, camera, axes, unhidden)
     looks = _ALL_OVER if subject.kind == "place" else _ASIDE
     values["foreground"] = _foreground(takes, world, at, camera, axes, picture, hidden, looks)
     values |= _motion(track, takes.roll, fps)

@@ -113,7 +113,7 @@ FAULTY = {
     "lead_room": "there is little room ahead of the face",
     "clearance": "the camera has hardly any room",
     "foreground": "something near is in the way",
-    "face_covered": "an arm, or what {whom} holds, is before the face",
+    "face_covered": "an arm, the chest, or what {whom} holds, is before the face",
     "backdrop_gap": "a wall is missing behind",
     "walk_missed": "much of the walk is missed",
     "act_missed": "what {whom} does is over when the camera comes to it",

@@ -15,6 +15,7 @@ from .framing import Array
 from .subject import Subject
 from .takes import Bools, Takes, within
 from .track import project
+from .vectors import length
 
 #: Metres before the camera from which on somebody is in its picture.
 BEFORE = 0.2
@@ -24,6 +25,7 @@ TRUNK, _AIR = 0.18, 0.42
 #: Of the length of a body in the picture, how far the chests of two are apart of whom none covers the other,
 #: one above the other; and the least of that, metres, as from overhead.
 _TALL, _FLAT = 0.65, 0.4
+_AIR_OF_HEADS = 3.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,6 +35,7 @@ class Crowd:
 
     eyes: Array
     crowns: Array
+    chins: Array
     feet: Array
     chests: Array
     head: Array
@@ -45,13 +48,20 @@ def crowd_of(
 ) -> Crowd:
     """Where people are in the pictures of the frames ``at``."""
     focal = takes.track.focal[:, at]
-    found, depths = [], []
-    for name in ("eyes", "crown", "feet", "pocket"):
+
+    def of(name: str) -> tuple[Array, Array]:
         points = np.stack([one.landmarks[name][at] for one in people], axis=1)
         xy, depth = project(points[None], camera, axes, focal, takes.track.sensor)
-        found.append(spread(xy, focal, takes.track.sensor))
-        depths.append(depth)
-    return Crowd(found[0], found[1], found[2], found[3], depths[0], depth, within(xy, depth, 0.0))
+        return xy, depth
+
+    eyes, head = of("eyes")
+    chests, depth = of("pocket")
+    inside = within(chests, depth, 0.0)
+    crowns, chins, feet = (of(name)[0] for name in ("crown", "chin", "feet"))
+    eyes, crowns, chins, feet, chests = (
+        spread(xy, focal, takes.track.sensor) for xy in (eyes, crowns, chins, feet, chests)
+    )
+    return Crowd(eyes, crowns, chins, feet, chests, head, depth, inside)
 
 
 def spread(xy: Array, focal: Array, sensor: tuple[float, float]) -> Array:
@@ -106,6 +116,18 @@ def crowded(crowd: Crowd, there: Array) -> Array:
     others = ~np.eye(there.shape[-1], dtype=bool)
     pairs = np.minimum(there[..., :, None], there[..., None, :]) * others
     return np.asarray(_lapped(crowd, pairs, _AIR).max(axis=-1))
+
+
+def lapped_heads(crowd: Crowd, there: Bools) -> Array:
+    """How near two heads are to each other in the picture, beside each other, of those that are nearest
+    [P, F]: 0 from :data:`_AIR_OF_HEADS` heights of the larger one on, 1 for one behind the other. there:
+    [P, F, K], whose heads are in it"""
+    large = length(crowd.crowns - crowd.chins)
+    aside = np.abs(crowd.eyes[..., :, None, 0] - crowd.eyes[..., None, :, 0])
+    larger = np.maximum(np.maximum(large[..., :, None], large[..., None, :]), 1e-3)
+    both = there[..., :, None] & there[..., None, :] & ~np.eye(there.shape[-1], dtype=bool)
+    near = np.clip(1.0 - aside / (_AIR_OF_HEADS * larger), 0.0, 1.0) * both
+    return np.asarray(near.max(axis=(-1, -2)))
 
 
 def _nearer(crowd: Crowd) -> Bools:

@@ -13,30 +13,30 @@ from numpy.typing import NDArray
 Measures = Mapping[str, NDArray[np.float64] | float]
 
 #: What is a fault: (criterion, measure, the least or the most of it that will do, and what of it could not be
-#: worse).
+#: worse). Bounds are where eyes begin to prefer the take that has it not.
 LEAST = (
-    ("visibility", "visibility", 0.95, 0.3),
+    ("visibility", "visibility", 0.8, 0.3),
     ("visibility", "head_visible", 0.85, 0.0),
     ("visibility", "ends_visible", 0.8, 0.0),
     ("visibility", "face", -0.6, -1.0),
     ("framing", "in_frame", 0.95, 0.3),
     ("framing", "view", 0.8, 0.0),
-    ("lead_room", "lead_room", -0.12, -0.6),
-    ("clearance", "clearance", 0.3, 0.0),
+    ("lead_room", "lead_room", -0.3, -0.6),
+    ("clearance", "clearance", 0.2, 0.0),
 )
 MOST = (
     ("visibility", "foreground", 0.05, 0.5),
     ("visibility", "face_covered", 0.3, 1.0),
-    ("visibility", "backdrop_gap", 0.03, 0.4),
+    ("visibility", "backdrop_gap", 0.1, 0.4),
     ("visibility", "walk_missed", 0.5, 1.0),
     ("visibility", "act_missed", 0.5, 1.0),
     ("framing", "head_cut", 0.03, 0.4),
-    ("framing", "feet_cut", 0.03, 0.4),
+    ("framing", "feet_cut", 0.15, 0.4),
     ("framing", "head_cropped", 0.6, 1.0),
     ("framing", "size_error", 0.1, 0.4),
     ("framing", "empty", 0.25, 0.9),
     ("framing", "company_cut", 0.5, 1.0),
-    ("headroom", "headroom_error", 0.14, 0.5),
+    ("headroom", "headroom_error", 0.2, 0.5),
     ("thirds", "thirds_error", 0.2, 0.5),
     ("steadiness", "jerk", 8.0, 30.0),
     ("steadiness", "speed", 3.5, 6.0),

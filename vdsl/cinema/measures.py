@@ -20,6 +20,7 @@ from .company import company_cut, company_shown
 from .composition import framing, size_error
 from .framing import Array
 from .gestures import act_missed, at_work, face_covered, gesture_lost, hands_missed
+from .legibility import legibility
 from .score import geometry_score as geometry_score
 from .sight import backdrop_gaps, clear_lines, clear_of_people, hidden_walls
 from .subject import SIGHT, Subject
@@ -54,6 +55,10 @@ MEASURES = (
     "hands_missed",  # share of the time hands are at work in which neither is seen; 0 for close-ups
     "gesture_lost",  # how little hands at work stand out from the body in the picture; 0 for close-ups
     "face_covered",  # share of the face that the own arms, what these hold, or the chest hide, and need not
+    "legible",  # how well the face of whom it is about is read: seen, turned to the camera, large; to its end
+    "heads",  # share of everybody, over all the time, whose head is in the frame and not hidden
+    "together",  # how near two heads are to each other in the picture, when they are furthest apart: 0..1
+    "hands_shown",  # share of the middle of the time in which a hand is in the frame and not hidden
     "company_cut",  # share of the time somebody beside the subject is in the picture without their head, and
     # more where the last frame is such a one
     "foreground",  # share of the picture covered by something much nearer than the subject, or ENDS_BEHIND
@@ -119,8 +124,11 @@ def measure(takes: Takes, subject: Subject, world: World, fps: float) -> Measure
         clear = clear_lines(world.solids, camera, points, hidden, takes.ignore)
         return np.asarray(clear & clear_of_people(camera, points, others))
 
-    def unhidden(points: Array, some: NDArray[np.int64] | slice = slice(None)) -> Bools:
-        return clear_lines(world.solids, camera[:, some], points, hidden, takes.ignore)
+    def unhidden(points: Array) -> Bools:
+        return clear_lines(world.solids, camera, points, hidden, takes.ignore)
+
+    def lines(some: NDArray[np.int64], eyes: Array, points: Array) -> Bools:
+        return clear_lines(world.solids, eyes, points, hidden[some], takes.ignore)
 
     seen = seen_from(sight)
     values["view"] = everybody_seen(takes, subject, at, camera, axes, seen_from)
@@ -139,7 +147,8 @@ def measure(takes: Takes, subject: Subject, world: World, fps: float) -> Measure
     ends = at_end | shown[:, -1].any(axis=-1)
     values["empty"] = np.minimum(1.0 - somebody.mean(axis=1) + ENDS_EMPTY * ~ends, 1.0)
     values["company_cut"] = company_cut(takes, subject, at, camera, axes, picture, unhidden)
-    values["floor_gap"] = floor_gaps(takes, world, subject.floor, at, camera, axes, unhidden)
+    values |= legibility(takes, subject, at, camera, axes, unhidden)
+    values["floor_gap"] = floor_gaps(takes, world, subject.floor, at, camera, axes, lines)
     looks = _ALL_OVER if subject.kind == "place" else _ASIDE
     values["foreground"] = _foreground(takes, world, at, camera, axes, picture, hidden, looks)
     values |= _motion(track, takes.roll, fps)

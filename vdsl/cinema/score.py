@@ -7,33 +7,28 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-#: What counts, and how much; the weights sum to one.
+#: What counts, and how much; the weights sum to one. Weighed, as the penalties are, so that of the takes of
+#: a line it prefers those that eyes did (docs/ranker.md): where in the frame a head is tells them next to
+#: nothing.
 WEIGHTS = {
-    "visibility": 0.16,
-    "in_frame": 0.12,
-    "face": 0.28,
-    "interest": 0.17,
-    "size": 0.06,
-    "headroom": 0.04,
-    "lead_room": 0.03,
-    "thirds": 0.06,
-    "clearance": 0.03,
-    "steadiness": 0.05,
+    "legible": 0.38,
+    "heads": 0.14,
+    "apart": 0.14,
+    "in_frame": 0.13,
+    "hands": 0.12,
+    "visibility": 0.07,
+    "headroom": 0.01,
+    "steadiness": 0.01,
 }
 
 #: Measures of what spoils a picture, and the share of the score each takes away where it is 1.
 PENALTIES = {
-    "backdrop_gap": 0.5,
-    "floor_gap": 0.3,
-    "foreground": 0.6,
+    "foreground": 0.9,
+    "backdrop_gap": 0.6,
     "face_covered": 0.4,
-    "empty": 0.6,
-    "walk_missed": 0.4,
-    "act_missed": 0.4,
-    "head_cropped": 0.2,
-    "hands_missed": 0.15,
-    "gesture_lost": 0.1,
+    "floor_gap": 0.3,
     "company_cut": 0.25,
+    "empty": 0.15,
 }
 
 #: How much a full point of the geometry score moves the odds of a take, in logits: as a prior. By this much
@@ -48,19 +43,14 @@ def parts(measures: Mapping[str, NDArray[np.float64] | float]) -> dict[str, NDAr
     """Every part of the score in 0..1, best 1 (see docs/cinema.md)."""
     m = {k: np.asarray(v, float) for k, v in measures.items()}
     calm = np.exp(-((m["angular_speed"] / 70.0) ** 2)) * np.exp(-((m["speed"] / 3.0) ** 2))
-    # three-quarter to frontal is best; from straight behind is worst
-    face = np.clip((m["face"] + 0.75) / 1.45, 0.0, 1.0)
     return {
-        "visibility": m["visibility"] * (0.5 + 0.5 * m["head_visible"]),
+        "legible": m["legible"],
+        "heads": m["heads"],
+        "apart": 1.0 - m["together"],
         "in_frame": m["in_frame"],
-        # the back of a head is not made up for by whom it looks at
-        "interest": m["interest"] * np.minimum(1.5 * face, 1.0),
-        "face": face,
-        "size": np.exp(-((m["size_drift"] / 0.7) ** 2)),
+        "hands": m["hands_shown"],
+        "visibility": m["visibility"] * (0.5 + 0.5 * m["head_visible"]),
         "headroom": np.exp(-((m["headroom_error"] / 0.12) ** 2)),
-        "lead_room": np.clip(0.7 + 1.5 * m["lead_room"], 0.0, 1.0),
-        "thirds": np.exp(-((m["thirds_error"] / 0.2) ** 2)),
-        "clearance": np.clip(m["clearance"] / 0.8, 0.0, 1.0),
         "steadiness": calm * np.exp(-m["jerk"] / 60.0),
     }
 

@@ -50,6 +50,10 @@ NOTES = {
     "hands_missed": Note("share", "little of what hands do is missed", 0.0, 0.5),
     "gesture_lost": Note("share", "what hands do stands out from the body", 0.0, 0.7),
     "face_covered": Note("share", "nothing of theirs, and nothing they hold, is before the face", 0.0, 0.1),
+    "legible": Note("share", "the face is read: seen, turned to the camera, large", 0.5, 1.0),
+    "heads": Note("share", "all heads are seen", 0.75, 1.0),
+    "together": Note("share", "heads are apart from each other", 0.0, 0.3),
+    "hands_shown": Note("share", "a hand is seen", 0.5, 1.0),
     "company_cut": Note("share", "others are whole, with air around them", 0.0, 0.5),
     "foreground": Note("share", "nothing near is in the way", 0.0, 0.1),
     "face": Note("cosine", "the face is turned to the camera", 0.0, 1.0),
@@ -65,12 +69,13 @@ NOTES = {
 }
 #: Of every part of the score: what the better take has, what the worse one, and the measure to quote.
 _COMPARED = {
+    "legible": ("the face is read better", "the face is read less well", "legible"),
+    "heads": ("more heads are seen", "fewer heads are seen", "heads"),
+    "apart": ("people more apart", "people less apart", "together"),
+    "hands": ("more of the hands", "less of the hands", "hands_shown"),
     "visibility": ("less hidden", "more hidden", "visibility"),
     "in_frame": ("the subject stays longer in the frame", "the subject leaves the frame more", "in_frame"),
     "framing": ("better framed", "not so well framed", "in_frame"),
-    "face": ("more of the face", "less of the face", "face"),
-    "interest": ("more of what the line is about", "less of what the line is about", "interest"),
-    "size": ("the size holds better", "the size drifts more", "size_drift"),
     "headroom": ("headroom nearer to the size's", "headroom farther from the size's", "headroom"),
     "lead_room": ("more lead room", "less lead room", "lead_room"),
     "thirds": ("eyes nearer the upper third", "eyes farther from the upper third", "thirds_error"),
@@ -85,20 +90,7 @@ _COMPARED = {
     ),
     "foreground": ("less in the way", "more in the way", "foreground"),
     "empty": ("less empty", "emptier", "empty"),
-    "walk_missed": ("less of the walk is missed", "more of the walk is missed", "walk_missed"),
-    "act_missed": ("less is missed of what they do", "more is missed of what they do", "act_missed"),
-    "hands_missed": ("less is missed of what hands do", "more is missed of what hands do", "hands_missed"),
-    "gesture_lost": (
-        "what hands do stands out more",
-        "what hands do stands out less from the body",
-        "gesture_lost",
-    ),
     "company_cut": ("others less cut off", "others more cut off", "company_cut"),
-    "head_cropped": (
-        "head and body less cut at the ends",
-        "head or body cut more at the start or the end",
-        "head_cropped",
-    ),
     "logit": ("liked better by the ranker", "liked less by the ranker", "logit"),
 }
 

@@ -30,13 +30,13 @@ def floor_gaps(
     at: NDArray[np.int64],
     camera: Array,
     axes: Array,
-    seen_from: Callable[[Array, NDArray[np.int64]], Bools],
+    seen_from: Callable[[NDArray[np.int64], Array, Array], Bools],
 ) -> Array:
     """Share [P] of looks at the lower part of the picture that go past the floors of a set indoors into
     nothing, first, halfway and last; or :data:`_ENDS` of the share in the last frame where that is more.
 
-    floor: height of the one the subject is on; seen_from: which of points [P, F, K, 3] no wall or thing hides
-    in some of the sampled frames [F], bool [P, F, K]
+    floor: height of the one the subject is on; seen_from: of some takes [N], cameras [N, F, 3] and points
+    [N, F, K, 3], which of these no wall or thing hides, bool [N, F, K]
     """
     if world.outdoor or not world.floors:
         return np.zeros(len(camera))
@@ -52,8 +52,9 @@ def floor_gaps(
     away = np.where(down, (floor - eye[..., 2]) / np.minimum(rays[..., 2], -_DOWN), 0.0)
     points = eye + away[..., None] * rays
     past = down & ~_on_floors(world, points)
-    if past.any():
-        past &= seen_from(points, some)
+    p, f, k = np.nonzero(past)  # line by line: most looks end on a floor, and these lie far apart
+    lines = points[p, f, k][:, None, None]
+    past[p, f, k] = seen_from(p, camera[p, some[f]][:, None], lines)[:, 0, 0]
     share = past.mean(axis=2)
     return np.asarray(np.maximum(share.mean(axis=1), _ENDS * share[:, -1]))
 

@@ -11,6 +11,7 @@ from __future__ import annotations
 import argparse
 import json
 from collections.abc import Iterator, Sequence
+from itertools import islice
 from pathlib import Path
 
 import numpy as np
@@ -72,11 +73,11 @@ def held_out_lines(
     """Lines of stories that no training saw, with their proposals: the first few of every story."""
     troupe, number, found = Troupe(seed + _SEED), TEST_EVERY - 1, 0
     while found < lines:
-        taken = 0
-        for scene in troupe.scenes(number, proposals, "test"):
-            if found < lines and taken < _A_STORY and len(scene.grids[0].cameras) >= _LEAST:
-                yield scene, scene.grids[0]
-                found, taken = found + 1, taken + 1
+        scenes = troupe.scenes(number, proposals, "test", most=1)
+        fit = (scene for scene in scenes if len(scene.grids[0].cameras) >= _LEAST)
+        for scene in islice(fit, min(_A_STORY, lines - found)):
+            yield scene, scene.grids[0]
+            found += 1
         number += TEST_EVERY
 
 

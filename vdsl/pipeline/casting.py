@@ -70,10 +70,12 @@ class Troupe:
         rng = random.Random(f"{self.seed} story {number}")
         return random_story(self.catalog, place, rng, self.lines, self._cast[split], self.cameras), place
 
-    def scenes(self, number: int, proposals: int, split: str | None = None) -> Iterator[Scene]:
+    def scenes(
+        self, number: int, proposals: int, split: str | None = None, most: int | None = None
+    ) -> Iterator[Scene]:
         """The lines of story ``number`` proposed; one that cannot be played (a way blocked, say) gives none.
 
-        split: another than the story's own
+        split: another than the story's own; most: how many of a line's shots are wanted, None for all
         """
         side = split or split_of_story(number)
         text, place = self.text(number, side)
@@ -86,7 +88,7 @@ class Troupe:
         cast = tuple(c.cast for c in checked.storyboard.characters)
         for act in acts:
             told = tell(act.state, act.line, act.filming, shot=act.line.shots[0])
-            shots = tuple(replace(shot, proposals=proposals) for shot in act.line.shots)
+            shots = tuple(replace(shot, proposals=proposals) for shot in act.line.shots[:most])
             grids = tuple(film(told, shot, act.state, act.filming) for shot in shots)
             filming = as_filmed(told, act.state, act.filming)
             where = f"{place.set}.{place.room}"

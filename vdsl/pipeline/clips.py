@@ -29,7 +29,7 @@ from .perturb import mistyped, perturbed
 
 _PICKS = 4  # of each shot
 #: Appeal below which nothing is picked, as good as the rest may be.
-BAR = 0.6
+BAR = 0.72
 #: Share of the negatives that are proposals passed over; of the others, of those that are of no type. The
 #: rest is perturbed.
 _PASSED_OVER, _MISTYPED = 0.5, 0.2

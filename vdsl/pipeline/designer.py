@@ -20,43 +20,40 @@ from .selection import alike, ranked
 
 Array = NDArray[np.float64]
 
-#: How much each criterion counts in the order of what has no fault; variety comes from :func:`picks`. Weighed
-#: so that of pairs of takes it prefers those that three pairs of eyes did (docs/ranker.md): who is seen, and
-#: from where, tells far more than by how little a head is off its line.
+#: How much each criterion counts in the order of what has no fault; variety comes from :func:`picks`.
+#: Weighed, as all below, so that of the takes of a line it prefers those that eyes did (docs/ranker.md): who
+#: is read in the picture tells far more than by how little a head is off its line.
 COUNTS = {
-    "visibility": 0.46,
-    "framing": 0.26,
-    "headroom": 0.06,
-    "lead_room": 0.04,
-    "thirds": 0.09,
-    "clearance": 0.04,
-    "steadiness": 0.05,
+    "visibility": 0.54,
+    "framing": 0.41,
+    "headroom": 0.01,
+    "lead_room": 0.01,
+    "thirds": 0.01,
+    "clearance": 0.01,
+    "steadiness": 0.01,
 }
-#: What of the visibility is how the face is turned, and what else matters; and how much of the framing goes
-#: with others who are cut, the floor that ends, and a head or body cut first or last.
-_TURNED, _INTEREST = 0.55, 0.35
-_COMPANY, _FLOOR, _CROPPED = 0.6, 0.4, 0.3
+#: What visibility is made of; the shares sum to one. ``apart`` is that people are not ``together``.
+SEEN = {"legible": 0.4, "heads": 0.22, "apart": 0.16, "hands_shown": 0.12, "visibility": 0.1}
+_COVERED = 0.45  # of it, what a face that is covered takes away
+#: What of the framing is that the subject is in it all the time; and what each of these takes away where it
+#: is 1.
+_IN_FRAME = 0.3
+SPOILS = {"foreground": 0.95, "backdrop_gap": 0.6, "company_cut": 0.33, "floor_gap": 0.3, "empty": 0.15}
 _LITTLE = 0.02  # the worst a criterion is taken for
 
 
 def qualities(measures: Measures) -> dict[str, Array]:
     """By criterion, how good the takes [P] are in it, 0..1."""
     m = {k: np.asarray(v, float) for k, v in measures.items()}
-    turned = np.clip((m["face"] + 0.75) / 1.4, 0.0, 1.0)  # from behind to three-quarter and frontal
+    whole = m["visibility"] * (0.5 + 0.5 * m["head_visible"])
+    parts = m | {"apart": 1.0 - m["together"], "visibility": whole}
+    seen = np.asarray(sum(share * parts[name] for name, share in SEEN.items()))
+    framing = 1.0 - _IN_FRAME + _IN_FRAME * m["in_frame"]
+    for name, share in SPOILS.items():
+        framing = framing * (1.0 - share * m[name])
     return {
-        "visibility": m["visibility"]
-        * m["head_visible"]
-        * (1.0 - 0.6 * m["face_covered"])
-        * (1.0 - 0.4 * m["act_missed"])
-        * (1.0 - 0.3 * m["gesture_lost"])
-        * (1.0 - _TURNED - _INTEREST + _TURNED * turned + _INTEREST * m["interest"]),
-        "framing": m["in_frame"]
-        * _near(m["size_drift"], 0.9)
-        * (1.0 - m["foreground"])
-        * (1.0 - m["empty"])
-        * (1.0 - _COMPANY * m["company_cut"])
-        * (1.0 - _FLOOR * m["floor_gap"])
-        * (1.0 - _CROPPED * m["head_cropped"]),
+        "visibility": seen * (1.0 - _COVERED * m["face_covered"]),
+        "framing": framing,
         "headroom": _near(m["headroom_error"], 0.12),
         "lead_room": np.clip(0.75 + 1.5 * m["lead_room"], 0.0, 1.0),
         "thirds": _near(m["thirds_error"], 0.16),

@@ -1,0 +1,98 @@
+"""Whether one reads at a glance who is there: heads seen, faces turned to the camera and large enough, people
+apart from each other, hands in the picture.
+
+Assumes a subject that knows its company. Eyes that were asked which of two takes of a line is the better one
+went by this more than by where in the frame a head is (docs/ranker.md).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .covering import behind_bodies, crowd_of, lapped_heads
+from .framing import Array
+from .sizes import Size
+from .subject import Subject
+from .takes import Bools, Takes, remembered, turned, within
+from .track import project
+from .vectors import length
+
+_HEAD = ("crown", "eyes", "chin")
+_HANDS = ("hand_l", "hand_r")
+_MARKS = (*_HEAD, "pocket", *_HANDS)  # what is looked for of everybody
+#: Share of the frame's height from which on a head is large enough to be read, and how tall one is, metres:
+#: of a size that shows a whole body, or a place, no more is to be had than that.
+_LARGE, _TALL = 0.15, 0.32
+#: Share of a head from which on it is taken for shown.
+_MOST_OF_IT = 0.6
+#: Cosines to the camera between which a face is read ever better: from behind to three-quarter.
+_BEHIND, _THREE_QUARTER = -0.75, 0.7
+
+
+def facing(cosine: Array | float) -> Array:
+    """How well a face is seen that is turned so to the camera: 0 from behind to 1 from three-quarter."""
+    return np.asarray(np.clip((np.asarray(cosine) - _BEHIND) / (_THREE_QUARTER - _BEHIND), 0.0, 1.0))
+
+
+def legibility(
+    takes: Takes,
+    subject: Subject,
+    at: NDArray[np.int64],
+    camera: Array,
+    axes: Array,
+    seen_from: Callable[[Array], Bools],
+) -> dict[str, Array]:
+    """Measures [P] of how well one reads who is there; of a thing, or without people, nothing is missed.
+
+    ``legible``: how well the face of whom it is about is read: how much of the head is seen, times how it is
+    turned, times how large it is, of several the mean; the last frame for more. ``hands_shown``: share of the
+    middle of the time in which one of their hands is seen. ``heads``: share of everybody, over all the time,
+    whose head is seen. ``together``: how near two heads are to each other in the picture, when they are
+    furthest apart.
+
+    seen_from: which of points [F, K, 3] no wall or thing hides, bool [P, F, K]
+    """
+    own = subject.members or ((subject,) if subject.kind == "person" else ())
+    people = (*own, *subject.company)
+    if not people:
+        nothing = np.zeros(len(camera))
+        return {name: nothing + 1.0 for name in ("legible", "hands_shown", "heads")} | {"together": nothing}
+    crowd = crowd_of(takes, people, at, camera, axes)
+    headless, _ = behind_bodies(crowd)
+    points = np.stack([one.landmarks[name][at] for one in people for name in _MARKS], axis=1)
+    xy, depth = project(points[None], camera, axes, takes.track.focal[:, at], takes.track.sensor)
+    marks: Bools = np.logical_and(within(xy, depth, 0.0), seen_from(points))
+    there: Bools = np.asarray(marks).reshape((*marks.shape[:2], len(people), len(_MARKS)))
+    head = there[..., : len(_HEAD)]
+    upper = np.asarray(there[..., : len(_HEAD) + 1].any(axis=-1))
+    hands = np.asarray(there[..., -len(_HANDS) :].any(axis=-1))
+    asked = np.ones((len(camera), 1, len(people), len(_HEAD)))
+    asked[:, 0, : len(own)] = np.array([_asked(size) for size in takes.sizes])[:, None]
+    shown = (head * asked).sum(axis=-1) / asked.sum(axis=-1) * ~headless
+    about = own or subject.company
+    cosine = np.stack([turned(one, at, camera) for one in about], axis=-1)
+    tall = length(crowd.crowns - crowd.chins) * takes.track.focal[:, at, None] / takes.track.sensor[1]
+    size = np.minimum(tall / _large(takes, subject)[:, None, None], 1.0)
+    read = (shown * size)[..., : len(about)] * facing(cosine)
+    middle = slice((len(at) - 1) // 2, len(at) // 2 + 1)
+    return {
+        "legible": remembered(read.mean(axis=-1), np.ones_like(takes.window)),
+        "hands_shown": hands[:, middle, : len(about)].mean(axis=(1, 2)),
+        "heads": (shown > _MOST_OF_IT).mean(axis=(1, 2)),
+        "together": lapped_heads(crowd, upper).min(axis=1),
+    }
+
+
+def _asked(size: Size) -> tuple[bool, ...]:
+    """Which of crown, eyes and chin a size is to show of whom it is about."""
+    return size.whole_head, True, size.lower != "nose"
+
+
+def _large(takes: Takes, subject: Subject) -> Array:
+    """From which share of the frame's height on a head is large enough, by the sizes of takes [P]."""
+    whole = np.array([size.lower == "feet" for size in takes.sizes])
+    share = np.array([size.share for size in takes.sizes])
+    return np.where(whole, np.minimum(share * _TALL / subject.height, _LARGE), _LARGE)

@@ -17,6 +17,7 @@ from pathlib import Path
 import numpy as np
 from PIL import Image
 
+from ..lang.shots import DEFAULT_PROPOSALS
 from ..propose.types import CameraProposal, ProposalGrid
 from .captions import grid
 from .casting import TEST_EVERY, Scene, Troupe
@@ -29,7 +30,6 @@ from .selection import unlike
 from .witness import best, vet
 
 _SEED = 2_000_003  # added to the seed: other stories than of training sets and hidden picks
-_PROPOSALS = 60
 _LEAST = 8  # proposals that there have to be to choose from
 _CELL = (256, 144)  # pixels of a frame
 _AT = (0.1, 0.5, 0.9)  # of a take's length
@@ -68,7 +68,7 @@ def sheets_of(cells: Sequence[tuple[str, str, Image.Image]], out: Path) -> None:
 
 
 def held_out_lines(
-    seed: int, lines: int, proposals: int = _PROPOSALS
+    seed: int, lines: int, proposals: int = DEFAULT_PROPOSALS
 ) -> Iterator[tuple[Scene, ProposalGrid]]:
     """Lines of stories that no training saw, with their proposals: the first few of every story."""
     troupe, number, found = Troupe(seed + _SEED), TEST_EVERY - 1, 0

@@ -16,6 +16,7 @@ from vdsl.propose.types import CameraProposal
 GOOD = dict.fromkeys(MEASURES, 0.0) | {
     "visibility": 1.0, "ends_visible": 1.0, "head_visible": 1.0, "in_frame": 1.0, "view": 1.0, "face": 0.6,
     "interest": 1.0, "clearance": 1.0, "headroom": 0.1, "lead_room": 0.1, "height": 1.5,
+    "legible": 0.9, "heads": 1.0, "hands_shown": 1.0,
 }  # fmt: skip
 
 
@@ -42,14 +43,15 @@ def test_every_criterion_has_faults_and_counts() -> None:
 
 
 WORSE = {
-    "visibility": 0.96, "face": -0.5, "headroom_error": 0.1, "lead_room": -0.1, "thirds_error": 0.15,
-    "clearance": 0.35, "jerk": 6.0, "foreground": 0.04, "size_drift": 0.7, "angular_speed": 60.0,
+    "legible": 0.7, "heads": 0.5, "together": 0.4, "hands_shown": 0.5, "visibility": 0.9, "face_covered": 0.2,
+    "foreground": 0.04, "backdrop_gap": 0.08, "company_cut": 0.4, "floor_gap": 0.3, "empty": 0.2,
+    "in_frame": 0.96, "headroom_error": 0.1, "lead_room": -0.2, "thirds_error": 0.15, "clearance": 0.35, "jerk": 6.0,
 }  # fmt: skip
 
 
 @pytest.mark.parametrize("name", WORSE)
 def test_what_is_worse_in_one_thing_appeals_less(name: str) -> None:
-    assert appeal(GOOD | {name: WORSE[name]}) < appeal(GOOD) - 0.002
+    assert appeal(GOOD | {name: WORSE[name]}) < appeal(GOOD) - 0.0005
 
 
 def test_a_weak_criterion_is_not_made_up_for() -> None:

@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
-from company import FILMING, takes_of, two
-from filmset import shot, world
+from company import BODY, FILMING, FRAMES, takes_of, two
+from filmset import shot, standing, world
 
 from runtime.world import World
 from vdsl.cinema.legibility import facing
 from vdsl.cinema.measures import measure
 from vdsl.cinema.score import WEIGHTS, geometry_score
-from vdsl.propose.subjects import subject_of
+from vdsl.cinema.subject import peopled, place
+from vdsl.propose.subjects import performed, pillars_of, subject_of
 from vdsl.propose.types import StoryProposal
 
 EYE, AIM = (3.5, 0.0, 1.4), (0.0, 0.0, 1.3)
@@ -62,6 +65,47 @@ def test_all_heads_are_counted_and_are_to_be_apart() -> None:
     near, apart = (measured(two((0.0, y)))["together"] for y in (0.3, 0.9))
     assert apart == 0.0 < 0.3 < near < 1.0
     assert measured(two((-1.0, 0.02)))["together"] > 0.8, "one before the other"
+
+
+def test_who_is_far_over_somebody_in_the_picture_is_apart() -> None:
+    """From overhead, a metre and a half apart along the picture's height, and along its width."""
+    eye, aim = (0.1, 0.0, 6.0), (0.0, 0.0, 1.0)
+    assert measured(two((-1.5, 0.0)), eye, aim)["together"] == 0.0
+    assert measured(two((0.0, 1.5)), eye, aim)["together"] == 0.0
+    assert measured(two((0.1, 0.3)), eye, aim)["together"] > 0.3
+
+
+def test_a_back_one_looks_over_hides_a_face() -> None:
+    told, said = two((1.6, 0.0), np.pi), shot(scale="medium")
+    subject = subject_of(replace(said, view="ots", whose=("ben",)), told, FILMING)
+    assert subject.company == ()
+    takes = takes_of("medium", "person", EYE, AIM)
+    pillars = pillars_of(said, told, FILMING, {"anna"})
+    alone, behind = (
+        measure(replace(takes, others=tuple(others), view="ots"), subject, FILMING.world, 24.0).values
+        for others in ((), pillars)
+    )
+    assert alone["legible"] > 0.7
+    assert alone["heads"] == 1.0
+    assert behind["legible"] < 0.1
+    assert behind["heads"] == 0.0
+
+
+def test_in_a_place_people_count_while_they_are_in_it() -> None:
+    room = place("room", (-3.0, -3.0, 0.0), (3.0, 3.0, 2.6), FRAMES)
+    there = two((0.0, 0.9))
+    away = np.tile((0.0, 0.9, 0.0), (FRAMES, 1))
+    away[FRAMES // 2 :, 1] = 9.0  # next door
+    leaves = replace(there, performances=there.performances | {"ben": standing(BODY, away, np.zeros(FRAMES))})
+    found = []
+    for told in (there, leaves):
+        people = [performed(name, acted, BODY) for name, acted in told.performances.items()]
+        subject = replace(peopled(room, people), company=tuple(people))
+        takes = takes_of("full", "place", (4.5, 0.4, 1.5), (0.0, 0.4, 1.2))
+        found.append(measure(takes, subject, FILMING.world, 24.0).values)
+    both, one = found
+    assert both["heads"] == one["heads"] == 1.0
+    assert abs(both["legible"] - one["legible"]) < 0.1
 
 
 def test_hands_are_looked_for_in_the_middle() -> None:

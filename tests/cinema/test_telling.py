@@ -81,7 +81,7 @@ def test_every_part_of_the_score_and_every_criterion_can_be_told_of_two_takes() 
 
 def test_faults_are_told_but_not_those_that_are_meant() -> None:
     assert faults(BEST, "static") == ()
-    cut = BEST | {"feet_cut": 0.1, "visibility": 0.61}
+    cut = BEST | {"feet_cut": 0.2, "visibility": 0.61}
     assert faults(cut, "follow") == ("hides part of the subject (61 % seen)", "cuts the feet")
     assert faults(cut, "push") == ("hides part of the subject (61 % seen)",)
 

@@ -152,8 +152,8 @@ def company_shown(
 ) -> dict[str, Array]:
     """Of a place with people in it: ``interest``, how many of their heads are seen, ``face``, how they are
     turned to the camera, what is seen (:func:`~vdsl.cinema.takes.visibility`) of who is seen best, less of
-    who is there for a shorter time, and ``head_cropped`` and ``head_cut``, of the worst off; half of its
-    ``visibility`` is that everybody is seen. seen_from: as above"""
+    who is there for a shorter time, and ``head_cropped`` and ``head_cut``, of the worst off; two thirds of
+    its ``visibility`` are that everybody is seen. seen_from: as above"""
     people, focal = subject.company, takes.track.focal[:, at]
     here = np.stack([subject.holds(one)[at] for one in people], axis=1)  # [F, people]
     crowd = crowd_of(takes, people, at, camera, axes)
@@ -181,7 +181,7 @@ def company_shown(
     last = np.where(takes.window[:, -1], share[:, -1], shown)
     # the last picture is what is remembered, and whoever is lost for a while is looked for
     shown = (shown + np.minimum(shown, np.minimum(last, _worst(share, takes.window)))) / 2
-    sight["visibility"] = (sight["visibility"] + shown) / 2
+    sight["visibility"] = (sight["visibility"] + 2.0 * shown) / 3.0
     return {"interest": shown, "face": faces, "head_cropped": cropped, "head_cut": cut} | sight
 
 

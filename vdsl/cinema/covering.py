@@ -25,7 +25,8 @@ TRUNK, _AIR = 0.18, 0.42
 #: Of the length of a body in the picture, how far the chests of two are apart of whom none covers the other,
 #: one above the other; and the least of that, metres, as from overhead.
 _TALL, _FLAT = 0.65, 0.4
-_AIR_OF_HEADS = 3.0
+#: Heights of a head between two of them that are apart; the least such height, as from overhead, metres.
+_AIR_OF_HEADS, _FROM_ABOVE = 3.0, 0.2
 
 
 @dataclass(frozen=True, eq=False)
@@ -120,13 +121,16 @@ def crowded(crowd: Crowd, there: Array) -> Array:
 
 def lapped_heads(crowd: Crowd, there: Bools) -> Array:
     """How near two heads are to each other in the picture, beside each other, of those that are nearest
-    [P, F]: 0 from :data:`_AIR_OF_HEADS` heights of the larger one on, 1 for one behind the other. there:
-    [P, F, K], whose heads are in it"""
-    large = length(crowd.crowns - crowd.chins)
-    aside = np.abs(crowd.eyes[..., :, None, 0] - crowd.eyes[..., None, :, 0])
-    larger = np.maximum(np.maximum(large[..., :, None], large[..., None, :]), 1e-3)
+    [P, F]: 0 from :data:`_AIR_OF_HEADS` heights of the larger one on, and for one so far over the other that
+    bodies do not meet, 1 for one behind the other. there: [P, F, K], who is in it"""
+    scale = 1.0 / np.maximum(crowd.depth, BEFORE)
+    large = np.maximum(length(crowd.crowns - crowd.chins), _FROM_ABOVE * scale)
+    long = np.abs(crowd.feet[..., 1] - crowd.crowns[..., 1])
+    high = np.maximum(_TALL * long, _FLAT * scale)
+    aside, above = np.moveaxis(np.abs(crowd.eyes[..., :, None, :] - crowd.eyes[..., None, :, :]), -1, 0)
+    larger, higher = (np.maximum(of[..., :, None], of[..., None, :]) for of in (large, high))
     both = there[..., :, None] & there[..., None, :] & ~np.eye(there.shape[-1], dtype=bool)
-    near = np.clip(1.0 - aside / (_AIR_OF_HEADS * larger), 0.0, 1.0) * both
+    near = np.clip(1.0 - aside / (_AIR_OF_HEADS * larger), 0.0, 1.0) * (above < higher) * both
     return np.asarray(near.max(axis=(-1, -2)))
 
 

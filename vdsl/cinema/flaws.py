@@ -13,7 +13,8 @@ from numpy.typing import NDArray
 Measures = Mapping[str, NDArray[np.float64] | float]
 
 #: What is a fault: (criterion, measure, the least or the most of it that will do, and what of it could not be
-#: worse). Bounds are where eyes begin to prefer the take that has it not.
+#: worse). Those of what hides, leads and
+#: cuts feet are wide: within them eyes do as well with as without (docs/ranker.md).
 LEAST = (
     ("visibility", "visibility", 0.8, 0.3),
     ("visibility", "head_visible", 0.85, 0.0),

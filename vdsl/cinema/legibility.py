@@ -23,8 +23,8 @@ from .vectors import length
 _HEAD = ("crown", "eyes", "chin")
 _HANDS = ("hand_l", "hand_r")
 _MARKS = (*_HEAD, "pocket", *_HANDS)  # what is looked for of everybody
-#: Share of the frame's height from which on a head is large enough to be read, and how tall one is, metres:
-#: of a size that shows a whole body, or a place, no more is to be had than that.
+#: Share of the frame's height from which on a head is large enough to be read; and, of sizes that show a
+#: whole body or a place, metres that come to as much: a third more than a head, so that nearer is better.
 _LARGE, _TALL = 0.15, 0.32
 #: Share of a head from which on it is taken for shown.
 _MOST_OF_IT = 0.6
@@ -43,6 +43,7 @@ def legibility(
     at: NDArray[np.int64],
     camera: Array,
     axes: Array,
+    unhidden: Callable[[Array], Bools],
     seen_from: Callable[[Array], Bools],
 ) -> dict[str, Array]:
     """Measures [P] of how well one reads who is there; of a thing, or without people, nothing is missed.
@@ -51,21 +52,26 @@ def legibility(
     turned, times how large it is, of several the mean; the last frame for more. ``hands_shown``: share of the
     middle of the time in which one of their hands is seen. ``heads``: share of everybody, over all the time,
     whose head is seen. ``together``: how near two heads are to each other in the picture, when they are
-    furthest apart.
+    furthest apart or but one is in it. In a place people count while they are in it.
 
-    seen_from: which of points [F, K, 3] no wall or thing hides, bool [P, F, K]
+    unhidden: which of points [F, K, 3] no wall or thing hides, bool [P, F, K]; seen_from: which nobody else
+    hides either
     """
     own = subject.members or ((subject,) if subject.kind == "person" else ())
     people = (*own, *subject.company)
     if not people:
         nothing = np.zeros(len(camera))
         return {name: nothing + 1.0 for name in ("legible", "hands_shown", "heads")} | {"together": nothing}
+    here = np.ones((len(at), len(people)), bool)
+    if not own:
+        here = np.stack([subject.holds(one)[at] for one in people], axis=1)
+    looks = ((own, seen_from), (subject.company, unhidden))
+    there = np.concatenate(
+        [_marks(takes, some, at, camera, axes, look) for some, look in looks if some], axis=2
+    )
+    there &= here[..., None]
     crowd = crowd_of(takes, people, at, camera, axes)
     headless, _ = behind_bodies(crowd)
-    points = np.stack([one.landmarks[name][at] for one in people for name in _MARKS], axis=1)
-    xy, depth = project(points[None], camera, axes, takes.track.focal[:, at], takes.track.sensor)
-    marks: Bools = np.logical_and(within(xy, depth, 0.0), seen_from(points))
-    there: Bools = np.asarray(marks).reshape((*marks.shape[:2], len(people), len(_MARKS)))
     head = there[..., : len(_HEAD)]
     upper = np.asarray(there[..., : len(_HEAD) + 1].any(axis=-1))
     hands = np.asarray(there[..., -len(_HANDS) :].any(axis=-1))
@@ -77,13 +83,29 @@ def legibility(
     tall = length(crowd.crowns - crowd.chins) * takes.track.focal[:, at, None] / takes.track.sensor[1]
     size = np.minimum(tall / _large(takes, subject)[:, None, None], 1.0)
     read = (shown * size)[..., : len(about)] * facing(cosine)
+    counts = here[:, : len(about)].sum(axis=1)
     middle = slice((len(at) - 1) // 2, len(at) // 2 + 1)
     return {
-        "legible": remembered(read.mean(axis=-1), np.ones_like(takes.window)),
-        "hands_shown": hands[:, middle, : len(about)].mean(axis=(1, 2)),
-        "heads": (shown > _MOST_OF_IT).mean(axis=(1, 2)),
+        "legible": remembered(read.sum(axis=-1) / np.maximum(counts, 1), np.ones_like(takes.window)),
+        "hands_shown": hands[:, middle, : len(about)].sum(axis=(1, 2)) / max(counts[middle].sum(), 1),
+        "heads": (shown > _MOST_OF_IT).sum(axis=(1, 2)) / max(here.sum(), 1),
         "together": lapped_heads(crowd, upper).min(axis=1),
     }
+
+
+def _marks(
+    takes: Takes,
+    people: tuple[Subject, ...],
+    at: NDArray[np.int64],
+    camera: Array,
+    axes: Array,
+    look: Callable[[Array], Bools],
+) -> Bools:
+    """Which of the marks of people are in the frame, and seen, [P, F, K, marks]."""
+    points = np.stack([one.landmarks[name][at] for one in people for name in _MARKS], axis=1)
+    xy, depth = project(points[None], camera, axes, takes.track.focal[:, at], takes.track.sensor)
+    seen = np.asarray(np.logical_and(within(xy, depth, 0.0), look(points)))
+    return seen.reshape((*seen.shape[:2], len(people), len(_MARKS)))
 
 
 def _asked(size: Size) -> tuple[bool, ...]:

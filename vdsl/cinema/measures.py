@@ -147,7 +147,7 @@ def measure(takes: Takes, subject: Subject, world: World, fps: float) -> Measure
     ends = at_end | shown[:, -1].any(axis=-1)
     values["empty"] = np.minimum(1.0 - somebody.mean(axis=1) + ENDS_EMPTY * ~ends, 1.0)
     values["company_cut"] = company_cut(takes, subject, at, camera, axes, picture, unhidden)
-    values |= legibility(takes, subject, at, camera, axes, unhidden)
+    values |= legibility(takes, subject, at, camera, axes, unhidden, seen_from)
     values["floor_gap"] = floor_gaps(takes, world, subject.floor, at, camera, axes, lines)
     looks = _ALL_OVER if subject.kind == "place" else _ASIDE
     values["foreground"] = _foreground(takes, world, at, camera, axes, picture, hidden, looks)

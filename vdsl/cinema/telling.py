@@ -71,7 +71,7 @@ NOTES = {
 _COMPARED = {
     "legible": ("the face is read better", "the face is read less well", "legible"),
     "heads": ("more heads are seen", "fewer heads are seen", "heads"),
-    "apart": ("people more apart", "people less apart", "together"),
+    "apart": ("heads run together less", "heads run together more", "together"),
     "hands": ("more of the hands", "less of the hands", "hands_shown"),
     "visibility": ("less hidden", "more hidden", "visibility"),
     "in_frame": ("the subject stays longer in the frame", "the subject leaves the frame more", "in_frame"),
@@ -206,25 +206,23 @@ def faults(measures: Measures, movement: str) -> tuple[str, ...]:
     near = movement in ("push", "zoom-in")  # meant to come so near that something is cut
     seen, covered = number("visibility", m["visibility"]), number("foreground", m["foreground"])
     asked = (
-        (m["visibility"] < 0.85, f"hides part of the subject ({seen} seen)"),
-        (m["feet_cut"] > 0.02 and not near, "cuts the feet"),
+        (m["visibility"] < 0.8, f"hides part of the subject ({seen} seen)"),
+        (m["feet_cut"] > 0.15 and not near, "cuts the feet"),
         (m["head_cut"] > 0.02 and not near, "cuts the head"),
         (m["face"] < -0.4, "sees the back of the head"),
         (m["walk_missed"] > 0.5, f"misses {number('walk_missed', m['walk_missed'])} of the walk"),
         (m["act_missed"] > 0.5, f"misses {number('act_missed', m['act_missed'])} of what they do"),
-        (m["hands_missed"] > 0.7, "does not show what the hands do"),
         (
             m["face_covered"] > 0.4,
             f"has an arm, or what they hold, before {number('face_covered', m['face_covered'])} of the face",
         ),
         (m["company_cut"] > 0.5, "shows somebody else without their head"),
         (m["foreground"] > 0.2, f"has something near over {covered} of the picture"),
-        (m["backdrop_gap"] > 0.05, "misses a wall behind the subject"),
+        (m["backdrop_gap"] > 0.1, "misses a wall behind the subject"),
         (m["floor_gap"] > 0.25, "shows where the set ends"),
-        (m["interest"] < 0.5, "does not show all the line is about"),
-        (m["lead_room"] < -0.1, f"leaves no room ahead of the face ({number('lead_room', m['lead_room'])})"),
+        (m["lead_room"] < -0.3, f"leaves no room ahead of the face ({number('lead_room', m['lead_room'])})"),
         (m["angular_speed"] > 70.0, f"turns fast ({number('angular_speed', m['angular_speed'])})"),
         (m["speed"] > 3.0, f"moves fast ({number('speed', m['speed'])})"),
-        (m["clearance"] < 0.35, f"stands only {number('clearance', m['clearance'])} from something"),
+        (m["clearance"] < 0.2, f"stands only {number('clearance', m['clearance'])} from something"),
     )
     return tuple(words for holds, words in asked if holds)

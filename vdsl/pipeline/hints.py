@@ -18,7 +18,8 @@ from .designer import appeal, qualities
 
 #: Measures that are heavy-tailed: their square root is taught.
 _LONG = ("jerk", "speed", "angular_speed")
-#: Measures that are not taught: what is told of them would be hardly more than what is told of the criterion.
+#: Measures that are not taught: what is told of them would be hardly more than what
+#: is told of the criterion, or they are in none.
 _UNTAUGHT = ("company_cut", "gesture_lost", "floor_gap")
 #: The least that the designer's criteria are taken for: their logarithms are taught, which add up to appeal.
 _WORST = 0.05

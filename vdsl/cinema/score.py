@@ -32,11 +32,11 @@ PENALTIES = {
 }
 
 #: How much a full point of the geometry score moves the odds of a take, in logits: as a prior. By this much
-#: designer's picks that are hidden among proposals come higher than by the pictures or the geometry alone.
-PRIOR = 30.0
-#: And by how much a fault in a criterion lowers it, times its gravity (:func:`vdsl.cinema.flaws.gravity`):
-#: what is plainly amiss is not made up for by what else is good.
-FLAW = 14.0
+#: the order is nearer to that of eyes than by the pictures or the geometry alone (docs/ranker.md).
+PRIOR = 150.0
+#: And by how much a fault in a criterion lowers it, times its gravity (:func:`vdsl.cinema.flaws.gravity`).
+#: The discriminator knows of faults by itself.
+FLAW = 3.0
 
 
 def parts(measures: Mapping[str, NDArray[np.float64] | float]) -> dict[str, NDArray[np.float64]]:

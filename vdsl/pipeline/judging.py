@@ -84,9 +84,9 @@ class GeometryJudge:
 
 
 _PRIOR_MIDDLE = 0.75
-#: What log odds are divided by before they become a score (the temperature of a softmax): a fault alone is
-#: worth 14, and as they are nearly all scores would read 0.00 or 1.00.
-_TEMPERATURE = 6.0
+#: What log odds are divided by before they become a score (the temperature of a softmax): those of a line lie
+#: dozens apart, and as they are nearly all scores would read 0.00 or 1.00.
+_TEMPERATURE = 15.0
 
 
 def prior(measures: Mapping[str, float]) -> float:

@@ -125,13 +125,18 @@ def lapped_heads(crowd: Crowd, there: Bools) -> Array:
     bodies do not meet, 1 for one behind the other. there: [P, F, K], who is in it"""
     scale = 1.0 / np.maximum(crowd.depth, BEFORE)
     large = np.maximum(length(crowd.crowns - crowd.chins), _FROM_ABOVE * scale)
-    long = np.abs(crowd.feet[..., 1] - crowd.crowns[..., 1])
-    high = np.maximum(_TALL * long, _FLAT * scale)
+    high = _one_over_the_other(crowd)
     aside, above = np.moveaxis(np.abs(crowd.eyes[..., :, None, :] - crowd.eyes[..., None, :, :]), -1, 0)
     larger, higher = (np.maximum(of[..., :, None], of[..., None, :]) for of in (large, high))
     both = there[..., :, None] & there[..., None, :] & ~np.eye(there.shape[-1], dtype=bool)
     near = np.clip(1.0 - aside / (_AIR_OF_HEADS * larger), 0.0, 1.0) * (above < higher) * both
     return np.asarray(near.max(axis=(-1, -2)))
+
+
+def _one_over_the_other(crowd: Crowd) -> Array:
+    """How far one is over another in the picture, [P, F, K], whose bodies do not meet."""
+    long = np.abs(crowd.feet[..., 1] - crowd.crowns[..., 1])
+    return np.asarray(np.maximum(_TALL * long, _FLAT / np.maximum(crowd.depth, BEFORE)))
 
 
 def _nearer(crowd: Crowd) -> Bools:
@@ -143,8 +148,7 @@ def _nearer(crowd: Crowd) -> Bools:
 def _lapped(crowd: Crowd, pairs: Array | Bools, half: float) -> Array:
     """How far bodies of so many metres to each side lap, by pairs [P, F, K, K]: of each the most."""
     scale = 1.0 / np.maximum(crowd.depth, BEFORE)  # of metres there
-    long = np.abs(crowd.feet[..., 1] - crowd.crowns[..., 1])
-    wide, high = half * scale, np.maximum(_TALL * long, _FLAT * scale)
+    wide, high = half * scale, _one_over_the_other(crowd)
     x, y = crowd.chests[..., 0], crowd.chests[..., 1]
     beside = np.abs(x[..., :, None] - x[..., None, :]) / (wide[..., :, None] + wide[..., None, :])
     above = np.abs(y[..., :, None] - y[..., None, :]) / high[..., None, :]

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..cinema.flaws import Measures, gravity
+from ..cinema.score import parts
 from ..propose.types import CameraProposal
 from .selection import alike, ranked
 
@@ -32,8 +33,8 @@ COUNTS = {
     "clearance": 0.01,
     "steadiness": 0.01,
 }
-#: What visibility is made of; the shares sum to one. ``apart`` is that people are not ``together``.
-SEEN = {"legible": 0.4, "heads": 0.22, "apart": 0.16, "hands_shown": 0.12, "visibility": 0.1}
+#: What visibility is made of: parts of the geometry score (:func:`vdsl.cinema.score.parts`); sums to one.
+SEEN = {"legible": 0.4, "heads": 0.22, "apart": 0.16, "hands": 0.12, "visibility": 0.1}
 _COVERED = 0.45  # of it, what a face that is covered takes away
 #: What of the framing is that the subject is in it all the time; and what each of these takes away where it
 #: is 1.
@@ -45,9 +46,8 @@ _LITTLE = 0.02  # the worst a criterion is taken for
 def qualities(measures: Measures) -> dict[str, Array]:
     """By criterion, how good the takes [P] are in it, 0..1."""
     m = {k: np.asarray(v, float) for k, v in measures.items()}
-    whole = m["visibility"] * (0.5 + 0.5 * m["head_visible"])
-    parts = m | {"apart": 1.0 - m["together"], "visibility": whole}
-    seen = np.asarray(sum(share * parts[name] for name, share in SEEN.items()))
+    found = parts(measures)
+    seen = np.asarray(sum(share * found[name] for name, share in SEEN.items()))
     framing = 1.0 - _IN_FRAME + _IN_FRAME * m["in_frame"]
     for name, share in SPOILS.items():
         framing = framing * (1.0 - share * m[name])

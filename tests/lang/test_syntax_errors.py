@@ -40,3 +40,24 @@ def test_a_name_alone_is_told_what_to_say_of_it() -> None:
     assert alone.span.text == "anna"
     assert "`anna at door`" in (alone.help or "")
     assert acts.fix == "(anna walk door)"
+
+
+@pytest.mark.parametrize(
+    ("line", "meant"),
+    [
+        ('anna: "What a night."', '(anna talk) say "What a night."'),
+        ("anna: What a night.", '(anna talk) say "What a night."'),
+        ('anna "What a night."', '(anna talk) say "What a night."'),
+        ("INT. KITCHEN - NIGHT", None),
+        ('"What a night."', None),
+    ],
+)
+def test_who_writes_a_screenplay_is_told_how_it_is_said_here(line: str, meant: str | None) -> None:
+    _, report = parse(Source("x.vds", line + "\n"))
+    (found,) = report.diagnostics
+    assert (found.code, found.fix) == ("VDS013", meant)
+    shown = "`scene kitchen" if line.startswith("INT") else ") say"
+    assert shown in (found.help or "")
+    if meant:
+        _, report = parse(Source("x.vds", meant + "\n"))
+        assert not report.diagnostics

@@ -136,6 +136,9 @@ RULES: tuple[Rule, ...] = (
     Rule("scene kitchen = apartment.kitchen dusk", "dusk", ("scene",), rf"=\s*{_N}\s+((?!at\b){_N})", "`at` is missing before the time of day",
          f"as in `{FORMS['scene']}`", r"at \1"),
     Rule("scene kitchen = apartment.kitchen at", "at", ("scene",), r"\s(at)\s*$", "the time of day is missing", "dawn, day, dusk or night"),
+    Rule("scene kitchen = apartment.kitchen, night", ", night", ("scene",), r"=\s*[^,]*?(,\s*(?:at\s+)?\w+)\s*$", "no comma before the time of day",
+         f"as in `{FORMS['scene']}`"),
+    Rule("scene kitchen, night", ",", ("scene",), r"^[^=]*?(,)", "the set is missing", f"as in `{FORMS['scene']}`"),
     # placements
     Rule("anna at", "at", ("placement",), r"\s(at|on|in|by|near|beside|to|of|facing|holding)(?:\s+(?:the|a|an))?\s*$", "a name is missing after this", f"as in `{FORMS['placement']}`"),
     Rule("anna at (1, 2)m", "(", ("placement",), r"(\()", "people are placed at something that has a name", f"as in `{FORMS['placement']}`"),
@@ -152,6 +155,8 @@ RULES: tuple[Rule, ...] = (
     Rule("prop table (width 1m)", "(", ("definition_head",), rf"^\w+\s+{_N}\s+(\()", "no space before this parenthesis", f"as in `{FORMS['definition_head']}`"),
     Rule("prop table(width = 1m)", "=", ("definition_head",), r"\([^)]*?(=)", "no `=` before a default", f"as in `{FORMS['definition_head']}`", ""),
     Rule('prop "table"', '"table"', ("definition_head",), r'^\w+\s+("[^"]*")', "names have no quotes", f"as in `{FORMS['definition_head']}`"),
+    Rule("set kitchen = apartment.kitchen", "set", ("definition_file",), rf"^(set)\s+{_N}\s*=\s*(?![^\"]*\.glb\b){_N}\s*(?:\bat\s+\w+\s*)?$",
+         "a place of the library is opened by `scene`", f"as in `{FORMS['scene']}`", "scene"),
     Rule("prop lamp = lamp.glb", "lamp.glb", ("definition_file",), r"=\s*([^\"\s].*?)\s*$", "the file is a text in quotes",
          f"as in `{FORMS['definition_file']}`", r'"\1"'),
 )  # fmt: skip
@@ -211,6 +216,18 @@ def unknown_statement(line: Span, word: str | None, report: Report) -> None:
     span = Span(line.source, line.start, line.start + len(word or text[:1]))
     meant = nearest(word, STATEMENT_WORDS) if word else None
     first = text.split("\n")[0].strip()
+    heading = re.match(r"(?:INT|EXT)\b[./ ]", first)
+    speech = re.fullmatch(r'([^\W\d][\w-]*)(?:\s*:\s*([^"]+|"[^"]*")|\s*("[^"]*"))', first)
+    if heading or (speech and meant is None):
+        whole = Span(line.source, line.start, line.start + len(first))
+        if speech:
+            words = (speech[2] or speech[3]).strip().strip('"')
+            fix = f'({speech[1]} talk) say "{words}"'
+            help = f"what somebody says stands behind what they do: `{fix}`"
+        else:
+            help, fix = f"a place opens as in `{FORMS['scene']}`", None
+        report.error("VDS013", whole, label="no line begins like this", help=help, fix=fix)
+        return
     if word and meant is None and first == word:
         report.error(
             "VDS013", span, label="no line begins like this",
@@ -223,7 +240,9 @@ def unknown_statement(line: Span, word: str | None, report: Report) -> None:
             help=f"what someone does stands in parentheses: `({first})`", fix=f"({first})",
         )  # fmt: skip
         return
-    if text.startswith("*") or text.startswith("-"):
+    if first.startswith('"'):
+        help = 'what somebody says stands behind what they do, as in `(anna talk) say "…"`'
+    elif text.startswith("*") or text.startswith("-"):
         help = "lists have no marks; each statement is a line of its own"
     else:
         help = "a story line is `(anna walk door)`, a camera line `/ (static full eye-level)`"

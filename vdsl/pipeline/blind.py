@@ -41,13 +41,12 @@ def blind(out: Path, lines: int, weights: Path | None = None, seed: int = 0, dev
     """Draw sheets of ``lines`` lines into ``out``; returns the key. Raises RankerError, OSError."""
     out.mkdir(parents=True, exist_ok=True)
     judge, camerawork = DiscriminatorJudge(weights, device), Camerawork(device)
-    rng, cells, key = np.random.default_rng(seed), [], []
+    cells, key = [], []
     for number, (scene, shown) in enumerate(held_out_lines(seed, lines), 1):
         scored = _scored(judge, camerawork, scene, shown)
         chosen = _first(scored, camerawork, scene, shown)
-        other = int(rng.choice(unlike(shown.cameras, chosen)))
-        scored.look([other])
-        sides = [chosen, other] if rng.random() < 0.5 else [other, chosen]
+        sides = drawn(shown.cameras, chosen, seed, number)
+        scored.look(sides)
         for letter, i in zip("AB", sides, strict=True):
             cells.append(
                 (f"{number} {letter}", shown.shot, strip(camerawork, scene, shown, shown.cameras[i]))
@@ -59,6 +58,17 @@ def blind(out: Path, lines: int, weights: Path | None = None, seed: int = 0, dev
     path = out / "key.json"
     path.write_text(json.dumps(key, indent=1) + "\n", "utf-8")
     return path
+
+
+def drawn(cameras: Sequence[CameraProposal], chosen: int, seed: int, line: int) -> list[int]:
+    """The chosen take and one by lot of those that do not look the same, in an order by lot.
+
+    The lots are of the seed and the line alone: beside the choices of two rankers stand the same takes, as
+    far as these choices look different from them.
+    """
+    lots, others = np.random.default_rng((seed, line)), set(unlike(cameras, chosen))
+    other = next(int(i) for i in lots.permutation(len(cameras)) if i in others)
+    return [chosen, other] if lots.random() < 0.5 else [other, chosen]
 
 
 def sheets_of(cells: Sequence[tuple[str, str, Image.Image]], out: Path) -> None:

@@ -1,4 +1,4 @@
-"""Who is in the way: as high as a hat, as broad as a head where the head is."""
+"""Who is in the way: as high as a hat, as broad as a head where the head is, and broader than deep."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ from vdsl.propose.subjects import Filming, pillars_of
 TALL = 1.7
 
 
-def seen_past(hat: str, over: float, aside: float = 0.0, view: str = "") -> bool:
+def seen_past(hat: str, over: float, aside: float = 0.0, view: str = "", yaw: float = 0.0) -> bool:
     """Whether somebody in the way leaves a line free that passes so far over their crown, or beside."""
     body = make_skeleton(BodySpec(height=TALL, hat=hat))
-    acted = story({"ben": standing(body, np.zeros((4, 3)), np.zeros(4))})
+    acted = story({"ben": standing(body, np.zeros((4, 3)), np.full(4, yaw))})
     filming = Filming(world(), {"ben": body}, 24.0, 0)
     pillars = pillars_of(shot(view=view, whose=("ben",) if view else ()), acted, filming, set())
     level = TALL + over
@@ -37,3 +37,12 @@ def test_there_is_a_view_beside_a_head_over_the_shoulder() -> None:
     assert seen_past("none", -0.1, 0.16)
     assert not seen_past("none", -0.5, 0.16)  # the shoulders are broader
     assert seen_past("none", -0.1, 0.1, view="ots")  # that one is meant to be in the picture
+
+
+def test_who_stands_sideways_hides_less() -> None:
+    chest = -0.45
+    assert not seen_past("none", chest, 0.25)
+    assert not seen_past("none", chest, -0.25)
+    assert seen_past("none", chest, 0.25, yaw=np.pi / 2)
+    assert seen_past("none", chest, 0.19, yaw=np.pi / 2)
+    assert seen_past("none", chest, 0.34)

@@ -23,7 +23,9 @@ from .types import STILL, Performance, StoryProposal
 
 Array = NDArray[np.float64]
 
-_MARGIN = 0.22  # radius of a person in somebody else's way, metres
+#: Metres, radii of a person in somebody else's way: of the trunk, which is wider than it is deep, and of a
+#: shoulder with the arm that hangs from it.
+_TRUNK, _ARM = 0.17, 0.1
 _SKULL, _HAT = 0.14, 0.04  # of a head with its hair, and how much a hat or high hair may add
 _BESIDE, _TALLER = 1.0, 0.25  # metres to somebody whose head is to be in the picture too, and over it
 _SOMETIME = 0.2  # share of the time they are that near
@@ -275,8 +277,8 @@ def company_of(
 def pillars_of(
     shot: Shot, story: StoryProposal, filming: Filming, without: set[str]
 ) -> list[tuple[Array, Array, float]]:
-    """Everybody else as pillars that hide what is behind them, each up to the shoulders and up to the top of
-    hat or hair: foot and crown [T, 3], and radius."""
+    """Everybody else as pillars that hide what is behind them: trunk and either arm up to the shoulders, and
+    the head up to the top of hat or hair. Foot and crown [T, 3], and radius."""
     out = []
     for name, acted in story.performances.items():
         if name in without:
@@ -288,7 +290,10 @@ def pillars_of(
             out.append((_on_floor(hips, acted), marks["crown"], _NECK))
             continue
         shoulders = np.column_stack([hips[:, :2], marks["collar"][:, 2]])
-        out.append((_on_floor(hips, acted), shoulders, _MARGIN))
+        out.append((_on_floor(hips, acted), shoulders, _TRUNK))
+        for side in ("l", "r"):
+            arm = acted.world_from_joint[:, JOINT[f"upperarm_{side}"], :3, 3].astype(float)
+            out.append((_on_floor(arm, acted), arm + np.array((0.0, 0.0, _ARM / 2)), _ARM))
         radius = _SKULL + min(skeleton.above, _HAT)
         out.append((_on_floor(marks["crown"], acted), marks["top"], radius))
     return out

@@ -6,9 +6,13 @@ import json
 from dataclasses import asdict
 from pathlib import Path
 
+import numpy as np
 import pytest
 
-from vdsl.pipeline.hiding import Scored, _read, best_of_all, told
+from ranker.evaluate import spearman
+from ranker.infer import Ranker
+from vdsl.pipeline import hiding
+from vdsl.pipeline.hiding import Scored, _read, best_of_all, hide, told
 
 HEAD = {"seed": 0, "look": 1, "schema": 4}
 
@@ -55,3 +59,20 @@ def test_what_was_scored_before_is_gone_on_with_and_of_another_kind_left(tmp_pat
     assert kept.read_text("utf-8") == text
     assert _read(kept, HEAD | {"look": 2}) == ([], set())
     assert not kept.exists()
+
+
+def test_by_guides_alone_proposals_come_in_nearly_the_order_of_pictures(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(hiding, "_A_SHOT", 24)
+    ranker = Ranker.load(device="cpu")
+    kept = tmp_path / "guides.jsonl"
+    (by_guides,) = hide(ranker, kept, 1, device="cpu", pictures=False)
+    (by_pictures,) = hide(ranker, tmp_path / "pictures.jsonl", 1, device="cpu")
+    assert by_guides.opinions == by_pictures.opinions
+    assert len(by_guides.margins) > 10
+    alike = spearman(np.array(by_guides.margins), np.array(by_pictures.margins))
+    assert alike is not None
+    assert alike > 0.97
+    monkeypatch.setattr(hiding, "_scored", None)  # what was scored is not scored again
+    assert hide(ranker, kept, 1, device="cpu", pictures=False) == [by_guides]

@@ -14,7 +14,7 @@ from ranker.data import Dataset, Words
 from ranker.errors import RankerError
 from ranker.evaluate import agreement_with_fp32, evaluate
 from ranker.infer import Ranker
-from ranker.weights import load_model, load_ranges
+from ranker.weights import load_model
 
 from .hiding import hide, told
 from .progress import Progress, Silence
@@ -29,16 +29,19 @@ def evaluated(
     seed: int = 0,
     device: str = "auto",
     progress: Progress | None = None,
+    by_guides: bool = False,
 ) -> dict[str, Any]:
     """Measure weights on the clips of a set that are for testing, and by picks hidden among proposals.
 
+    by_guides: judge the latter by their guides alone, which nobody has to draw pictures for
     Raises :class:`ranker.RankerError` for a set or weights that cannot be used, OSError.
     """
     watcher = progress or Silence()
     held_set = Dataset(data)
     model, card = load_model(weights)
-    ranges = load_ranges(weights, model, card)
-    ranker = Ranker(model, device if device in ("cpu", "cuda") else "auto", ranges)
+    ranker = Ranker.load(weights, device if device in ("cpu", "cuda") else "auto")
+    if by_guides and not ranker.judges_guides:
+        raise RankerError("these weights were never taught by guides alone: leave out --by-guides")
     ranker.fits(held_set.frames)
     test = np.array(
         [i for i, label in enumerate(held_set.labels) if label.split == "test" and not label.bare], np.int64
@@ -53,7 +56,8 @@ def evaluated(
     found = evaluate(ranker, held_set, test)
     watcher.advance("clips", len(test), 0.0)
     some = np.random.default_rng(seed + 1).permutation(test)[:exact]
-    found["spearman_fp32"] = agreement_with_fp32(load_model(weights)[0], ranker, held_set, some)
-    kept = data / "hidden" / f"{card.sha256[:12]}-{ranker.engine}.jsonl"
-    found |= told(hide(ranker, kept, proposals, seed, device, progress) if proposals else [])
+    found["spearman_fp32"] = agreement_with_fp32(model, ranker, held_set, some)
+    judged = "guides" if by_guides else ranker.engine
+    kept = data / "hidden" / f"{card.sha256[:12]}-{judged}.jsonl"
+    found |= told(hide(ranker, kept, proposals, seed, device, progress, not by_guides) if proposals else [])
     return {"weights": card.sha256, "engine": ranker.engine, "data": held_set.about(), **found}

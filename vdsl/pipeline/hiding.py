@@ -66,10 +66,12 @@ def hide(
     seed: int = 0,
     device: str = "auto",
     progress: Progress | None = None,
+    pictures: bool = True,
 ) -> list[Scored]:
     """Score at least so many proposals of shots of test stories, going on with what ``kept`` holds.
 
-    kept: a file of JSON lines, of these weights alone. Raises OSError.
+    kept: a file of JSON lines, of these weights alone; pictures: whether they are looked at beside the
+    guides. Raises OSError, ValueError for weights that need pictures.
     """
     watcher = progress or Silence()
     head = {"seed": seed, "look": LOOK_VERSION, "schema": 4}
@@ -90,7 +92,7 @@ def hide(
             if not best:
                 continue
             begun = perf_counter()
-            scored = _scored(name, scene, shot, grid, best, ranker, camerawork)
+            scored = _scored(name, scene, shot, grid, best, ranker, camerawork, pictures)
             file.write(json.dumps(asdict(scored)) + "\n")
             file.flush()
             done.append(scored)
@@ -156,6 +158,7 @@ def _scored(
     choices: list[int],
     ranker: Ranker,
     camerawork: Camerawork,
+    pictures: bool,
 ) -> Scored:
     logits: list[float] = []
     margins: list[float] = []
@@ -167,11 +170,12 @@ def _scored(
         cameras = grid.cameras[begin : begin + _AT_ONCE]
         about = [subject] * len(cameras)
         return camerawork.judge_frames(
-            scene.staged, shot.style, grid.story, cameras, (size, size), about=about
+            scene.staged, shot.style, grid.story, cameras, (size, size), about=about, pictures=pictures
         )
 
     for _, seen in one_ahead(drawn, range(0, len(grid.cameras), _AT_ONCE)):
-        scores = ranker.score(seen.frames, seen.guides)
+        assert seen.guides is not None
+        scores = ranker.score(seen.frames, seen.guides) if pictures else ranker.by_guides(seen.guides)
         logits += [round(float(m), 5) for m in scores.logit]
         margins += [round(float(m), 5) for m in scores.margin]
     measures = {k: np.array([c.measures[k] for c in grid.cameras]) for k in grid.cameras[0].measures}

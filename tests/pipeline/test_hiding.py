@@ -11,7 +11,7 @@ import pytest
 
 from ranker.evaluate import spearman
 from ranker.infer import Ranker
-from vdsl.pipeline import hiding
+from vdsl.pipeline import dataset, hiding
 from vdsl.pipeline.hiding import Scored, _read, best_of_all, hide, told
 
 HEAD = {"seed": 0, "look": 1, "schema": 4}
@@ -76,3 +76,6 @@ def test_by_guides_alone_proposals_come_in_nearly_the_order_of_pictures(
     assert alike > 0.97
     monkeypatch.setattr(hiding, "_scored", None)  # what was scored is not scored again
     assert hide(ranker, kept, 1, device="cpu", pictures=False) == [by_guides]
+    monkeypatch.setattr(dataset, "_RECIPE", -1)  # by another designer it is
+    with pytest.raises(TypeError):
+        hide(ranker, kept, 1, device="cpu", pictures=False)

@@ -33,7 +33,7 @@ def evaluated(
 ) -> dict[str, Any]:
     """Measure weights on the clips of a set that are for testing, and by picks hidden among proposals.
 
-    by_guides: judge the latter by their guides alone, which nobody has to draw pictures for
+    by_guides: judge the latter by their guides alone, for which nobody has to draw pictures
     Raises :class:`ranker.RankerError` for a set or weights that cannot be used, OSError.
     """
     watcher = progress or Silence()

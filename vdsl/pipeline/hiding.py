@@ -19,13 +19,13 @@ from numpy.typing import NDArray
 
 from ranker.evaluate import agreement, hidden
 from ranker.infer import Ranker
-from runtime.raster.types import LOOK_VERSION
 
 from ..cinema.score import geometry_score, parts
 from ..lang.ir import Shot
 from ..propose.types import ProposalGrid
 from .ahead import one_ahead
 from .casting import TEST_EVERY, Scene, Troupe
+from .dataset import made
 from .designer import judged, picks
 from .filming import Camerawork, Seen
 from .guides import about_of
@@ -74,7 +74,7 @@ def hide(
     guides. Raises OSError, ValueError for weights that need pictures.
     """
     watcher = progress or Silence()
-    head = {"seed": seed, "look": LOOK_VERSION, "schema": 4}
+    head = {**made(seed), "schema": 4}
     done, numbers = _read(kept, head)
     count = sum(len(s.margins) for s in done)
     watcher.begin("proposals", max(0, proposals - count), "proposals")

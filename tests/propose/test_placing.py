@@ -7,11 +7,14 @@ import math
 import pytest
 
 from vdsl.lang import Report, Source
+from vdsl.lang.ir import Target
+from vdsl.lang.source import Span
 from vdsl.pipeline.compile import stage_acts
 from vdsl.pipeline.script import ScriptError, check_source
-from vdsl.propose.places import near_on_foot
+from vdsl.propose.places import approach, near_on_foot
 from vdsl.propose.state import SceneState
 
+ANNA = Target("character", ("anna",), "anna", Span(Source("x.vds", ""), 0, 0))
 HEAD = "character ben = man\ncharacter anna = woman\nscene s = {} at day\n"
 
 
@@ -53,6 +56,16 @@ def test_nobody_is_placed_behind_a_wall() -> None:
     state = opened("apartment", "anna at living.coats", "ben in front of anna")
     anna, ben = state.actors["anna"], state.actors["ben"]
     assert near_on_foot(state.world, anna.position, ben.position)
+
+
+def test_nobody_comes_up_to_somebody_from_behind_the_shelf_they_look_at() -> None:
+    """As to shake hands, with a bookshelf between."""
+    state = opened("house.living", "anna at bookshelf facing bookshelf", "ben at stairs")
+    anna, ben = state.actors["anna"], state.actors["ben"]
+    stop = approach(ANNA, state, "ben", ben.position)
+    assert stop is not None
+    assert 0.7 < math.dist(anna.position[:2], (stop.x, stop.y)) < 1.5
+    assert near_on_foot(state.world, anna.position, (stop.x, stop.y, stop.z))
 
 
 def test_two_who_are_placed_by_each_other_are_an_error() -> None:

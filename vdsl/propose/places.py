@@ -430,15 +430,20 @@ def near_on_foot(world: World, start: Point, goal: Point) -> bool:
 
 
 def _before(name: str, state: SceneState, people: Discs, start: Place | None) -> Stop | None:
-    """Face to face with somebody: in front of them, else as near to that as there is room."""
+    """Face to face with somebody: in front of them with nothing between, else as near to that as there is
+    room."""
     other, world = state.actors[name], state.world
 
     def joined(goal: Point) -> bool:
         return start is None or reachable(world, start, goal, people)
 
-    goal = _by_somebody(name, state, people, _AHEAD, _FACE_TO_FACE, joined)
-    if goal is not None:
-        return Stop(goal[0], goal[1], _towards(goal, other.position), goal[2])
+    def near(goal: Point) -> bool:
+        return joined(goal) and near_on_foot(world, other.position, goal)
+
+    for will_do in (near, joined):  # not on the other side of a shelf that they look at, if there is a choice
+        goal = _by_somebody(name, state, people, _AHEAD, _FACE_TO_FACE, will_do)
+        if goal is not None:
+            return Stop(goal[0], goal[1], _towards(goal, other.position), goal[2])
     found = nearest_free(world, other.position, people, within=1.6, start=start)
     if found is None:
         return None

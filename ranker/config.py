@@ -33,7 +33,7 @@ class ModelConfig:
     first_fault, faults: which of the measures, one after the other, say by log odds that a shot has a fault
     guides: width of what is made of guides, 0 for none; meant: whether the frames of these that are meant to
         show the subject are found, and looked at by themselves; people: whether those in a shot are looked at
-        one by one
+        one by one; crowd: and how they stand to each other
     liking: what log odds of being liked best count, by which shots are put in order; 0 where that is not
         taught, and those of being good are gone by
     appeal, appealing: which of the measures says how well good ones are composed, and what it counts beside
@@ -57,6 +57,7 @@ class ModelConfig:
     guides: int = 0
     meant: bool = False
     people: bool = False
+    crowd: bool = False
     liking: float = 0.0
     appeal: int = 0
     appealing: float = 0.0
@@ -198,7 +199,7 @@ def model_from_json(values: dict[str, Any]) -> ModelConfig:
         further = ("motion", "measures", "first_fault", "faults", "marks", "guides", "appeal")
         rest |= {k: int(values.get(k, 0)) for k in further}
         rest["inner"] = int(values.get("inner", rest["size"]))
-        rest |= {k: bool(values.get(k, False)) for k in ("moments", "meant", "people")}
+        rest |= {k: bool(values.get(k, False)) for k in ("moments", "meant", "people", "crowd")}
         rest |= {"backbone": str(values["backbone"]), "liking": float(values.get("liking", 0.0))}
         rest["appealing"] = float(values.get("appealing", 0.0))
         config = ModelConfig(**words, **rest)

@@ -13,6 +13,7 @@ import torch
 from torch import Tensor, nn
 
 from .composed import COMPOSED, EYES_INSIDE, SUMMED, WINDOWED, composed, over_time, over_window
+from .crowd import CROWDED, crowd_of
 from .framed import FRAMED, framed
 from .guides import CHANNELS, FLOW, MARKS, SIDE, Guides, pairs
 from .people import PEOPLED, SUMMED_UP, people_of
@@ -134,10 +135,11 @@ class GuideNet(nn.Module):
     """A description of every frame by its maps and marks, and of a shot by these and the camera's motion.
 
     frames: of a whole shot; meant: whether it tells which of them are meant to show the subject, and sums
-        these up as well; people: whether it looks at people one by one
+        these up as well; people: whether it looks at people one by one; crowd: and at how they stand to each
+        other
     """
 
-    def __init__(self, frames: int, meant: bool = False, people: bool = False) -> None:
+    def __init__(self, frames: int, meant: bool = False, people: bool = False, crowd: bool = False) -> None:
         super().__init__()
         first = (nn.Conv2d(len(CHANNELS), _PATCHES, _PATCH, _PATCH), nn.ReLU())
         second = (nn.Conv2d(_PATCHES, 2 * _PATCHES, 3, 2, 1), nn.GroupNorm(8, 2 * _PATCHES), nn.ReLU())
@@ -158,6 +160,8 @@ class GuideNet(nn.Module):
         if meant:
             self.window = Window(self.frame, _MOVED + _PACES)
             self.shot += WINDOWED * self.frame + FRAMED
+        self.crowd = crowd
+        self.shot += CROWDED * crowd
 
     @torch.no_grad()
     def fit(self, seen: Guided, good: Tensor) -> None:
@@ -188,12 +192,14 @@ class GuideNet(nn.Module):
         with torch.autocast(maps.device.type, enabled=False):
             frames, goes = frames.float(), torch.cat([moved.float(), _paces(seen)], 1)
             shot = torch.cat([over_time(frames, seen.times, inside), goes], 1)
-            if self.window is None:
-                return Description(frames, shot, shot[:, :0])
-            meant = self.window(frames, goes, seen.times)
-            asked = meant.detach().sigmoid()  # who judges is not to say what was meant
-            windowed = over_window(frames, asked)
-            return Description(frames, torch.cat([shot, windowed, framed(seen.marks, asked)], 1), meant)
+            meant, parts = shot[:, :0], [shot]
+            if self.window is not None:
+                meant = self.window(frames, goes, seen.times)
+                asked = meant.detach().sigmoid()  # who judges is not to say what was meant
+                parts += [over_window(frames, asked), framed(seen.marks, asked)]
+            if self.crowd:
+                parts.append(crowd_of(seen.marks, seen.maps))
+            return Description(frames, torch.cat(parts, 1), meant)
 
 
 def _paces(seen: Guided) -> Tensor:

@@ -138,7 +138,7 @@ class ShotRanker(nn.Module):
             self.faults = nn.Parameter(torch.ones(config.faults))
         self.guided: GuideNet | None = None
         if config.guides:
-            self.guided = GuideNet(config.frames, config.meant, config.people)
+            self.guided = GuideNet(config.frames, config.meant, config.people, config.crowd)
             wide = 2 * config.guides
             gathered = nn.Sequential(nn.Linear(self.guided.shot, wide), nn.ReLU(), nn.Dropout(0.1))
             last = nn.Sequential(nn.Linear(wide, config.guides), nn.ReLU(), nn.Dropout(0.1))

@@ -14,6 +14,7 @@ from torch import Tensor
 
 from .composed import SUMMED, WINDOWED
 from .config import ModelConfig
+from .crowd import CROWDED
 from .errors import RankerError
 from .framed import FRAMED
 from .guided import GuideNet, People
@@ -43,7 +44,7 @@ def take_over(
             f"{folder}: are weights of a {others.backbone}, and no {words.backbone} can start from them"
         )
     told: list[str] = list(card.data.get("hints") or ())
-    if model.guided is not None and (words.meant, words.people) != (others.meant, others.people):
+    if model.guided is not None and _looks(words) != _looks(others):
         before, now = (_columns(model.guided, words, config) for config in (others, words))
         for name in (name for name in now if name in other and name in ours):
             if other[name].shape[1] != len(before[name]) or ours[name].shape[1] != len(now[name]):
@@ -60,6 +61,11 @@ def take_over(
     return card.sha256, fit
 
 
+def _looks(config: ModelConfig) -> tuple[bool, bool, bool]:
+    """What of guides a network looks at by itself."""
+    return config.meant, config.people, config.crowd
+
+
 def _columns(guided: GuideNet, own: ModelConfig, config: ModelConfig) -> dict[str, list[_Column]]:
     """What the columns of matrices that read what is told by guides are of, in a network of that config.
 
@@ -67,13 +73,14 @@ def _columns(guided: GuideNet, own: ModelConfig, config: ModelConfig) -> dict[st
     """
     frame = guided.frame + (config.people - own.people) * People.described
     window = WINDOWED * guided.frame + FRAMED if own.meant else 0
-    rest = guided.shot - SUMMED * guided.frame - window
+    rest = guided.shot - SUMMED * guided.frame - window - CROWDED * own.crowd
     described = [("frame", 0, i) for i in range(frame)]
     shot = [("summed", k, i) for k in range(SUMMED) for i in range(frame)]
     shot += [("moved", 0, i) for i in range(rest)]
     if config.meant:
         shot += [("meant", k, i) for k in range(WINDOWED) for i in range(frame)]
         shot += [("framed", 0, i) for i in range(FRAMED)]
+    shot += [("crowd", 0, i) for i in range(CROWDED * config.crowd)]
     found = {"gathered.0.weight": shot, "straight.weight": shot, "marker_guided.weight": described}
     if guided.window is not None:
         more = guided.window.frame.in_features - guided.frame

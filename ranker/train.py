@@ -100,6 +100,7 @@ def train(
         guides=config.guides if data.guided is not None else 0,
         meant=_tells_meant(config, data),
         people=config.guides > 0 and data.guided is not None,
+        crowd=config.guides > 0 and data.guided is not None,
         liking=liking,
         appeal=taught_of.index(_APPEAL) if _APPEAL in taught_of else 0,
         appealing=APPEALING if liking and _APPEAL in taught_of else 0.0,

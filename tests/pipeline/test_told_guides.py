@@ -6,8 +6,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+import torch
 from proposed_shots import proposed
 
+from ranker.crowd import LEAST_TOGETHER, crowd_of
 from ranker.guides import CHANNELS, FLOW, MARKS, SIDE, pairs
 from runtime.body.skeleton import JOINT
 from vdsl.cinema.gestures import at_work
@@ -301,3 +303,21 @@ def test_how_a_camera_goes_is_told() -> None:
     jerks = paces_of(replace(track, position=jolted, rotation=turned), at, count / fps)[:, 2]
     assert jerks[3] > 10
     assert max(*jerks[:2], *jerks[5:]) < 0.1
+
+
+@pytest.mark.parametrize("words", ["static full", "static wide", "pedestal-up full"])
+def test_how_near_two_heads_are_to_each_other_is_told_as_it_is_measured(
+    words: str, camerawork: Camerawork
+) -> None:
+    act, grid = filmed(words)
+    about = [about_of(act.line.shots[0], grid, act.filming, act.staged)] * len(grid.cameras)
+    guides = camerawork.judge_frames(
+        act.staged, "board", grid.story, grid.cameras, about=about, pictures=False
+    ).guides
+    assert guides is not None
+    found = crowd_of(torch.from_numpy(guides.marks).float(), torch.from_numpy(guides.maps))
+    told = np.sinh(found[:, LEAST_TOGETHER].numpy()) / 5
+    measured = np.array([camera.measures["together"] for camera in grid.cameras])
+    assert measured.max() > 0.2
+    assert np.abs(told - measured).mean() < 0.05
+    assert np.corrcoef(told, measured)[0, 1] > 0.8

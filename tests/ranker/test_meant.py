@@ -122,14 +122,15 @@ def test_a_network_that_tells_them_starts_from_weights_that_do_not(tmp_path: Pat
     assert now.meant.shape == (2, FRAMES)
 
 
-def test_a_network_that_looks_at_people_starts_from_weights_that_do_not(tmp_path: Path) -> None:
+@pytest.mark.parametrize("look", ["people", "crowd"])
+def test_a_network_that_looks_at_people_starts_from_weights_that_do_not(tmp_path: Path, look: str) -> None:
     torch.manual_seed(0)
     shape = model_config(guides=16, moments=True, marks=2, measures=3, meant=True)
     other = ShotRanker(shape).eval()
     torch.nn.init.normal_(other.straight.weight, std=0.02)
     save_weights(tmp_path, other)
     other = load_model(tmp_path)[0]
-    ours = ShotRanker(replace(shape, people=True)).eval()
+    ours = ShotRanker(replace(shape, **{look: True})).eval()
     _, taken = take_over(ours, tmp_path)
     assert taken["straight.weight"].isnan().any()
     rng = np.random.default_rng(3)

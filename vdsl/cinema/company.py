@@ -12,6 +12,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from .bodies import behind_own_back
 from .composition import broken
 from .covering import BEFORE, TRUNK, behind_bodies, behind_heads, covered, crowd_of, crowded
 from .framing import Array
@@ -112,7 +113,7 @@ def _beside_it(
     sides = seen_from(points[None, :, 3:4] + np.concatenate([-aside, aside], axis=2))
     seen = seen_from(points)
     body &= seen[:, :, 3:].any(axis=2) | sides.any(axis=2)
-    head &= seen[:, :, :2].any(axis=2)
+    head &= seen[:, :, :2].any(axis=2) & ~behind_own_back(one, at, camera)
     split = np.maximum(_halved(xy[:, :, 3, 0], TRUNK * wide), sides[..., 0] != sides[..., 1])
     return body, head, split, far
 
@@ -160,6 +161,7 @@ def company_shown(
     eyes = np.stack([one.landmarks["eyes"][at] for one in people], axis=1)
     xy, depth = project(eyes[None], camera, axes, focal, takes.track.sensor)
     seen = within(xy, depth, _EDGE) & seen_from(eyes) & ~behind_heads(crowd.eyes, depth, crowd.feet)
+    seen &= ~np.stack([behind_own_back(one, at, camera) for one in people], axis=-1)
     apart = 1.0 - _COVERED * covered(crowd)
     counts = here.sum(axis=1)
     share = np.where(counts > 0, (seen * apart * here).sum(axis=2) / np.maximum(counts, 1), 1.0)

@@ -12,6 +12,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
+from .bodies import behind_own_back
 from .covering import behind_bodies, crowd_of, lapped_heads
 from .framing import Array
 from .sizes import Size
@@ -28,6 +29,8 @@ _MARKS = (*_HEAD, "pocket", *_HANDS)  # what is looked for of everybody
 _LARGE, _TALL = 0.15, 0.32
 #: Share of a head from which on it is taken for shown.
 _MOST_OF_IT = 0.6
+#: Share of the frame along its borders in which no mark of a head is taken for seen: it would only touch it.
+_BORDER = 0.015
 #: Cosines to the camera between which a face is read ever better: from behind to three-quarter.
 _BEHIND, _THREE_QUARTER = -0.75, 0.7
 
@@ -72,6 +75,7 @@ def legibility(
     there &= here[..., None]
     crowd = crowd_of(takes, people, at, camera, axes)
     headless, _ = behind_bodies(crowd)
+    headless = headless | np.stack([behind_own_back(one, at, camera) for one in people], axis=-1)
     head = there[..., : len(_HEAD)]
     upper = np.asarray(there[..., : len(_HEAD) + 1].any(axis=-1))
     hands = np.asarray(there[..., -len(_HANDS) :].any(axis=-1))
@@ -104,7 +108,9 @@ def _marks(
     """Which of the marks of people are in the frame, and seen, [P, F, K, marks]."""
     points = np.stack([one.landmarks[name][at] for one in people for name in _MARKS], axis=1)
     xy, depth = project(points[None], camera, axes, takes.track.focal[:, at], takes.track.sensor)
-    seen = np.asarray(np.logical_and(within(xy, depth, 0.0), look(points)))
+    inner = np.tile(np.isin(_MARKS, _HEAD), len(people))
+    there = np.where(inner, within(xy, depth, _BORDER), within(xy, depth, 0.0))
+    seen = np.asarray(np.logical_and(there, look(points)))
     return seen.reshape((*seen.shape[:2], len(people), len(_MARKS)))
 
 

@@ -12,6 +12,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
+from .bodies import pillars
 from .composition import broken
 from .covering import behind_heads, spread
 from .framing import Array
@@ -26,7 +27,6 @@ _HAIR, _CHEEK = 0.1, 0.02  # metres of a head to its side that hide, and of a fa
 #: Cosine to the camera from which on one over whose shoulder it looks shows it a face, and what that takes
 #: away: it is a fault, but none for which there is to be no take at all.
 _FACES, _TO_US = 0.35, 0.25
-_MARGIN = 0.2  # radius of one of them in the way of another, metres
 #: Who acts counts as much of the faces as that, all others share the rest; and a face turned to the camera
 #: does not make up for a back: from this cosine on (nearly in profile) more is no better. It is as good among
 #: several as that of three quarters is of somebody alone.
@@ -102,9 +102,10 @@ def everybody_measured(
         sight = [picture.names.index(n) for n in SIGHT]
         inside = within(picture.xy[:, :, sight], picture.depth[:, :, sight], 0.0)
         bodies = [
-            (other.position[at], other.landmarks["crown"][at], _MARGIN)
+            (foot[at], crown[at], radius)
             for other in subject.members
             if other is not one
+            for foot, crown, radius in pillars(other)
         ]
         seen = seen_from(points) & clear_of_people(camera, points, bodies)
         found.append(visibility(takes, inside, seen) | {"head_cropped": broken(takes, one, picture)})

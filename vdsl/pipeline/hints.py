@@ -20,7 +20,7 @@ from .designer import appeal, qualities
 _LONG = ("jerk", "speed", "angular_speed")
 #: Measures that are not taught: what is told of them would be hardly more than what
 #: is told of the criterion, or they are in none.
-_UNTAUGHT = ("company_cut", "gesture_lost", "floor_gap")
+_UNTAUGHT = ("gesture_lost",)
 #: The least that the designer's criteria are taken for: their logarithms are taught, which add up to appeal.
 _WORST = 0.05
 #: Points of a subject whose place in the frame is taught; half frames from its middle, no further than this.

@@ -9,11 +9,12 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from runtime.body.skeleton import JOINT, Skeleton
+from runtime.body.skeleton import Skeleton
 from runtime.nav import level_at
 from runtime.world import Spot, World, WorldObject
 
 from ..cinema import rig_cinema, rig_paper
+from ..cinema.bodies import Pillar, pillars
 from ..cinema.subject import Subject, group, peopled, person, place, thing
 from ..lang.ir import Shot, Target
 from ..library import Catalog
@@ -23,10 +24,6 @@ from .types import STILL, Performance, StoryProposal
 
 Array = NDArray[np.float64]
 
-#: Metres, radii of a person in somebody else's way: of the trunk, which is wider than it is deep, and of a
-#: shoulder with the arm that hangs from it.
-_TRUNK, _ARM = 0.17, 0.1
-_SKULL, _HAT = 0.14, 0.04  # of a head with its hair, and how much a hat or high hair may add
 _BESIDE, _TALLER = 1.0, 0.25  # metres to somebody whose head is to be in the picture too, and over it
 _SOMETIME = 0.2  # share of the time they are that near
 _STANDS = 1.65  # metres: what a spot in a room is as tall as
@@ -274,31 +271,17 @@ def company_of(
     return pillars_of(shot, story, filming, {subject.name, *subject.heads, *owner})
 
 
-def pillars_of(
-    shot: Shot, story: StoryProposal, filming: Filming, without: set[str]
-) -> list[tuple[Array, Array, float]]:
-    """Everybody else as pillars that hide what is behind them: trunk and either arm up to the shoulders, and
-    the head up to the top of hat or hair. Foot and crown [T, 3], and radius."""
+def pillars_of(shot: Shot, story: StoryProposal, filming: Filming, without: set[str]) -> list[Pillar]:
+    """Everybody else as pillars that hide what is behind them; of whom it looks over the shoulder, a thin
+    one."""
     out = []
     for name, acted in story.performances.items():
         if name in without:
             continue
-        skeleton = filming.skeletons[name]
-        marks = performed(name, acted, skeleton).landmarks
-        hips = acted.world_from_joint[:, JOINT["hips"], :3, 3].astype(float)
+        one = performed(name, acted, filming.skeletons[name])
         if shot.view == "ots" and name in shot.whose:
-            out.append((_on_floor(hips, acted), marks["crown"], _NECK))
-            continue
-        shoulders = np.column_stack([hips[:, :2], marks["collar"][:, 2]])
-        out.append((_on_floor(hips, acted), shoulders, _TRUNK))
-        for side in ("l", "r"):
-            arm = acted.world_from_joint[:, JOINT[f"upperarm_{side}"], :3, 3].astype(float)
-            out.append((_on_floor(arm, acted), arm + np.array((0.0, 0.0, _ARM / 2)), _ARM))
-        radius = _SKULL + min(skeleton.above, _HAT)
-        out.append((_on_floor(marks["crown"], acted), marks["top"], radius))
+            foot = np.column_stack([one.landmarks["waist"][:, :2], one.position[:, 2]])
+            out.append((foot, one.landmarks["crown"], _NECK))
+        else:
+            out += pillars(one)
     return out
-
-
-def _on_floor(points: Array, acted: Performance) -> Array:
-    """What is below points [T, 3] of somebody, at the height they stand at."""
-    return np.column_stack([points[:, :2], acted.position[:, 2]])

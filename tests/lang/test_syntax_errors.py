@@ -50,14 +50,16 @@ def test_a_name_alone_is_told_what_to_say_of_it() -> None:
         ('anna "What a night."', '(anna talk) say "What a night."'),
         ("INT. KITCHEN - NIGHT", None),
         ('"What a night."', None),
+        ("Title: Rain", 'storyboard "Rain"'),
+        ("Author: J. Doe", "# Author: J. Doe"),
     ],
 )
 def test_who_writes_a_screenplay_is_told_how_it_is_said_here(line: str, meant: str | None) -> None:
     _, report = parse(Source("x.vds", line + "\n"))
     (found,) = report.diagnostics
     assert (found.code, found.fix) == ("VDS013", meant)
-    shown = "`scene kitchen" if line.startswith("INT") else ") say"
-    assert shown in (found.help or "")
+    shown = {"INT.": "`scene kitchen", "Title:": "`storyboard", "Author:": "comment"}
+    assert shown.get(line.split()[0], ") say") in (found.help or "")
     if meant:
         _, report = parse(Source("x.vds", meant + "\n"))
         assert not report.diagnostics

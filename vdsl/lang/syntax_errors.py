@@ -209,6 +209,20 @@ STATEMENT_WORDS = ("storyboard", "character", "scene", "use", "set", "prop", "ca
                    "fade-out", "fade-in", "wipe", "fps", "size", "aspect", "seed", "rig", "style", "takes",
                    "proposals", "aperture")  # fmt: skip
 
+#: What stands on the title page of a screenplay beside the title.
+_TITLE_PAGE = (
+    "author",
+    "authors",
+    "credit",
+    "date",
+    "draft",
+    "source",
+    "contact",
+    "copyright",
+    "notes",
+    "revision",
+)
+
 
 def unknown_statement(line: Span, word: str | None, report: Report) -> None:
     """A line that begins like no statement."""
@@ -220,12 +234,20 @@ def unknown_statement(line: Span, word: str | None, report: Report) -> None:
     speech = re.fullmatch(r'([^\W\d][\w-]*)(?:\s*:\s*([^"]+|"[^"]*")|\s*("[^"]*"))', first)
     if heading or (speech and meant is None):
         whole = Span(line.source, line.start, line.start + len(first))
-        if speech:
-            words = (speech[2] or speech[3]).strip().strip('"')
+        words = (speech[2] or speech[3]).strip().strip('"') if speech else ""
+        key = speech[1].lower() if speech else ""
+        fix: str | None = None
+        if key == "title":
+            fix = f'storyboard "{words}"'
+            help = f"the title of a storyboard is said by `{fix}`"
+        elif key in _TITLE_PAGE:
+            fix = f"# {first}"
+            help = f"what is for readers alone is a comment: `{fix}`"
+        elif speech:
             fix = f'({speech[1]} talk) say "{words}"'
             help = f"what somebody says stands behind what they do: `{fix}`"
         else:
-            help, fix = f"a place opens as in `{FORMS['scene']}`", None
+            help = f"a place opens as in `{FORMS['scene']}`"
         report.error("VDS013", whole, label="no line begins like this", help=help, fix=fix)
         return
     if word and meant is None and first == word:

@@ -135,12 +135,15 @@ def _seen(inside: Tensor, covered: Tensor) -> Tensor:
     return torch.stack([*told, hands, others, 1 - somebody], -1)
 
 
+def away_of(nearness: Tensor) -> Tensor:
+    """How far away (log metres) is what codes of maps that are not 0 stand for."""
+    return (1 - (nearness.float() - 1) / 254) * math.log(FARTHEST / NEAREST) + math.log(NEAREST)
+
+
 def _foreground(nearness: Tensor, distance: Tensor) -> tuple[Tensor, Tensor]:
     """Whether what is seen at the looks is much nearer than the subject, [B, T, looks], and the shares of the
     picture that are nearer by so much, [B, T, 3]. nearness: codes [B, T, SIDE, SIDE]; distance: its log"""
-    code = nearness.float()
-    away = (1 - (code - 1) / 254) * math.log(FARTHEST / NEAREST) + math.log(NEAREST)  # log metres
-    by = torch.where(code > 0, distance[..., None, None] - away, -2.0)
+    by = torch.where(nearness > 0, distance[..., None, None] - away_of(nearness), -2.0)
     column, row = (torch.tensor([int((look[k] + 1) * SIDE / 2) for look in _LOOKS]) for k in (0, 1))
     looks = torch.sigmoid(_HARD * (by[:, :, row.to(by.device), column.to(by.device)] - math.log(2)))
     return looks, torch.stack([(by > least).float().mean((2, 3)) for least in _NEARER], -1)

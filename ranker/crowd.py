@@ -15,11 +15,10 @@ from typing import NamedTuple
 import torch
 from torch import Tensor
 
-from .composed import hidden
-from .guides import CHANNELS, FARTHEST, MARKS, NEAREST, PEOPLE, SIDE
+from .composed import away_of, hidden
+from .framed import SENSOR
+from .guides import CHANNELS, FARTHEST, MARKS, PEOPLE, SIDE
 
-#: Half a sensor of 16 to 9 to the right and to the top, millimetres.
-_SENSOR = (18.0, 10.125)
 #: Half the breadth of a head and its hair, of a trunk, and of one with its arms and some air beside it:
 #: metres.
 _HEAD, _TRUNK, _AIR = 0.11, 0.18, 0.42
@@ -244,14 +243,14 @@ def _people(told: Tensor) -> _People:
     right, up, far = right.nan_to_num(3.0), up.nan_to_num(3.0), far.nan_to_num(4.0)
     there = there & (torch.maximum(right.abs(), up.abs()).amin(-1) <= _OUT)
     lens = marks["lens"].nan_to_num(3.5).exp().unsqueeze(-1)
-    aside, down = right * _SENSOR[0] / lens.unsqueeze(-1), -up * _SENSOR[1] / lens.unsqueeze(-1)
+    aside, down = right * SENSOR[0] / lens.unsqueeze(-1), -up * SENSOR[1] / lens.unsqueeze(-1)
     x, y = (  # a subject's distance is that of its waist, of people it is that of their eyes
         torch.cat([place[..., :1, _WAIST], place[..., 1:, _EYES]], -1) for place in (aside, down)
     )
     depth = torch.where(there, far.exp() / (1 + x * x + y * y).sqrt(), FARTHEST)
     inside = (right.abs() < 1) & (up.abs() < 1) & there.unsqueeze(-1)
     clear = inside & (hidden(nearer, depth.log().unsqueeze(-1)) < 0.5)
-    breadth = lens / _SENSOR[0] / depth.clamp_min(_BEFORE)
+    breadth = lens / SENSOR[0] / depth.clamp_min(_BEFORE)
     return _People(
         torch.cat([alone, about], -1), there, right, up, aside, down, depth, inside, clear, breadth
     )
@@ -285,10 +284,9 @@ def _by(values: Tensor) -> Tensor:
 def _in_the_way(told: Tensor, maps: Tensor) -> Tensor:
     """How much of the picture something near covers, [B, 4]: beside a subject, and all over a place; then
     what there is of both at the end."""
-    code = maps[..., CHANNELS.index("nearness")].float()
-    away = (1 - (code - 1) / 254) * math.log(FARTHEST / NEAREST) + math.log(NEAREST)
+    code = maps[..., CHANNELS.index("nearness")]
     distance = told[..., MARKS.index("distance")].nan_to_num(1.0)
-    by = torch.where(code > 0, distance[..., None, None] - away, _NOTHING)
+    by = torch.where(code > 0, distance[..., None, None] - away_of(code), _NOTHING)
     own = maps[..., CHANNELS.index("subject")].float() / 255
     way = torch.stack([(by > least) * counts for least, counts in _IN_THE_WAY], -1).amax(-1) * (1 - own)
     found = torch.stack([_at(way, looks).mean(-1) for looks in (_ASIDE, _ALL_OVER)], -1)

@@ -29,7 +29,7 @@ _LINES = (
 _BOTTOMS = ("chin", "pocket", "waist", "thigh", "knees", "feet")
 _WORK = [MARKS.index(f"work_{side}") for side in "lr"]
 #: Millimetres of half a sensor of 16 to 9, to the right and to the top.
-_SENSOR = (18.0, 10.125)
+SENSOR = (18.0, 10.125)
 #: Metres beside the line from waist to chin at which hands before a body hardly stand out from it, and at
 #: which they do so plainly.
 _WITHIN, _PLAIN = 0.1, 0.41
@@ -76,7 +76,7 @@ def _frames(told: Tensor) -> Tensor:
     others = there[..., OTHERS].float()
     share = (clear[..., OTHERS].sum(-1) + (others.sum(-1) == 0)) / others.sum(-1).clamp_min(1)
     work = told[..., _WORK].nan_to_num(0.0)
-    metres = torch.stack([right * _SENSOR[0], up * _SENSOR[1]], -1) / size.exp()[..., None, None]
+    metres = torch.stack([right * SENSOR[0], up * SENSOR[1]], -1) / size.exp()[..., None, None]
     waist, chin = (metres[..., POINTS.index(p), :] for p in ("waist", "chin"))
     beside = torch.stack([_off(metres[..., k, :], waist, chin) for k in HANDS], -1)
     plain = ((beside - _WITHIN) / (_PLAIN - _WITHIN)).clamp(0, 1) * clear[..., HANDS]
@@ -107,7 +107,7 @@ def _off(point: Tensor, begin: Tensor, end: Tensor) -> Tensor:
 def _turned(marks: dict[str, Tensor], x: Tensor, y: Tensor) -> Tensor:
     """Cosine between the subject's face and the way to the camera, 0 for what has no face."""
     lens = marks["lens"].nan_to_num(3.5).exp()
-    ray = torch.stack([x * _SENSOR[0] / lens, y * _SENSOR[1] / lens, torch.ones_like(lens)], -1)
+    ray = torch.stack([x * SENSOR[0] / lens, y * SENSOR[1] / lens, torch.ones_like(lens)], -1)
     face = torch.stack([marks[f"{way}_face"].nan_to_num(0.0) for way in ("right", "up", "away")], -1)
     return -(face * ray).sum(-1) / ray.norm(dim=-1)
 

@@ -16,7 +16,7 @@ from typing import Any
 import torch
 from safetensors import SafetensorError
 from safetensors.torch import load, save
-from torch import Tensor
+from torch import Tensor, nn
 
 from .config import Card, ModelConfig, model_from_json, to_json
 from .engine import INT8
@@ -41,14 +41,17 @@ def save_weights(
     measured: dict[str, Any] | None = None,
     ranges: Ranges | None = None,
 ) -> Card:
-    """Write ``model.safetensors`` (float16; vectors stay float32) and ``config.json`` into the folder.
+    """Write ``model.safetensors`` and ``config.json`` into the folder. In float16, but for vectors: they stay
+    float32, other than what batch norm learns, which is as coarse as the convolutions it follows.
 
     ranges: for computing in eight bits, into ``int8.json``; without them one that is there goes
     """
     folder = Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
+    norms = (f"{name}." for name, part in model.named_modules() if isinstance(part, nn.BatchNorm2d))
+    coarse = {norm + learnt for norm in norms for learnt in ("weight", "bias")}
     tensors = {
-        name: (value.half() if value.ndim > 1 else value.float()).cpu().contiguous()
+        name: (value.half() if value.ndim > 1 or name in coarse else value.float()).cpu().contiguous()
         for name, value in model.state_dict().items()
         if not name.endswith("num_batches_tracked")
     }

@@ -20,7 +20,7 @@ from ranker.evaluate import auc, evaluate
 from ranker.infer import Ranker, fold_batch_norm
 from ranker.model import ShotRanker, frame_times, normalised
 from ranker.train import learning_rate, train, watch
-from ranker.weights import load_card, load_model, save_weights
+from ranker.weights import SHIPPED, load_card, load_model, save_weights
 from vdsl.pipeline.judging import DiscriminatorJudge
 
 
@@ -159,6 +159,17 @@ def test_weights_survive_the_disk(tmp_path: Path, weights: Path) -> None:
     again, _ = load_model(tmp_path)
     for (name, a), (_, b) in zip(model.state_dict().items(), again.state_dict().items(), strict=True):
         torch.testing.assert_close(a, b, msg=name)
+
+
+def test_what_norms_learn_is_kept_as_coarse_as_convolutions(tmp_path: Path, weights: Path) -> None:
+    save_weights(tmp_path, load_model(weights)[0])
+    kept = load_file(tmp_path / "model.safetensors")
+    assert kept["backbone.bn1.weight"].dtype == torch.float16
+    assert kept["backbone.bn1.running_var"].dtype == torch.float32
+
+
+def test_the_shipped_weights_are_no_larger_than_they_may_be() -> None:
+    assert sum(path.stat().st_size for path in SHIPPED.iterdir()) <= 60_000_000
 
 
 def damage(folder: Path, how: str) -> str:

@@ -3,7 +3,7 @@
 Each frame is compared with the one before, carried over by depth: what a surface showed there, it should
 show here. Carrying over by part of a pixel blurs, which is no change of the picture; so the earlier frame is
 carried half of that part on, the later one as far back, and both are blurred alike. Assumes that nothing but
-the camera moves. What came into view only now is left out.
+the camera moves. The sky is compared as what is very far away; what came into view only now is left out.
 """
 
 from __future__ import annotations
@@ -20,6 +20,7 @@ from runtime.raster.views import pack_views
 
 #: Differences up to this many steps of 255 go unseen.
 SEEN = 16
+_SKY = 1e6  # metres that what lies behind everything is away: it turns with the camera and does not move
 _SAME_DEPTH = 0.02  # share of the depth by which a surface may lie elsewhere and still be the same
 
 
@@ -86,17 +87,16 @@ def _changed(
         + ((x - now[14]) / now[12])[..., None] * now[3:6]
         - ((y - now[15]) / now[13])[..., None] * now[6:9]
     )
-    there = np.isfinite(depth[1])
-    far = np.where(there, depth[1], 1.0)
+    far = np.minimum(depth[1], _SKY)
     offset = now[0:3] + rays * far[..., None] - before[0:3]
     z = offset @ before[9:12]
     ahead = z > 1e-3
     safe = np.where(ahead, z, 1.0)
     u = before[14] + before[12] * (offset @ before[3:6]) / safe - 0.5
     v = before[15] - before[13] * (offset @ before[6:9]) / safe - 0.5
-    known = there & ahead & (u >= 1) & (v >= 1) & (u <= width - 2) & (v <= height - 2)
+    known = ahead & (u >= 1) & (v >= 1) & (u <= width - 2) & (v <= height - 2)
     # it must have been in view: the pixel it comes from shows the same surface
-    was = _taken(np.minimum(depth[0], 1e6), u, v, cv2.INTER_NEAREST)
+    was = _taken(np.minimum(depth[0], _SKY), u, v, cv2.INTER_NEAREST)
     known &= np.abs(was - z) < _SAME_DEPTH * z
     right, down = ((d - np.round(d)) / 2 for d in (u - (x - 0.5), v - (y - 0.5)))
     earlier = _taken(color[0], u - right, v - down, cv2.INTER_LINEAR)

@@ -308,7 +308,7 @@ def test_what_does_not_get_worse_is_no_negative(scenes: list[Scene], monkeypatch
     assert [clip for scene in scenes for clip in drawn_of(scene, 0)] == []
 
 
-def test_a_training_set_is_half_good_and_goes_on_where_it_stopped(
+def test_a_training_set_is_nearly_half_good_and_goes_on_where_it_stopped(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("vdsl.pipeline.dataset.Troupe", partial(Troupe, lines=2, cameras=2))
@@ -319,7 +319,7 @@ def test_a_training_set_is_half_good_and_goes_on_where_it_stopped(
     assert len(framed) == at_once == data.about()["clips"]
     assert data.about()["bare"] == len(data) - at_once > at_once
     good = [label for label in framed if label.professional]
-    assert len(good) * 2 == at_once
+    assert 0.35 * at_once < len(good) <= 0.5 * at_once  # some are none when they are drawn
     assert all(label.strength == 0 and label.about["kind"] == "designer" for label in good)
     assert all(label.strength > 0 and label.split for label in framed if not label.professional)
     names, hints = data.hints

@@ -6,7 +6,6 @@ backs, hide each other or lose their heads is a poor one. Assumes a subject that
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -16,6 +15,7 @@ from .bodies import behind_own_back
 from .composition import broken
 from .covering import BEFORE, TRUNK, behind_bodies, behind_heads, covered, crowd_of, crowded
 from .framing import Array
+from .looking import Sight
 from .subject import SIGHT, Subject
 from .takes import Bools, Picture, Takes, mean_of, pictured, remembered, turned, visibility, within
 from .together import turned_among
@@ -49,15 +49,13 @@ def company_cut(
     camera: Array,
     axes: Array,
     picture: Picture,
-    seen_from: Callable[[Array], Bools],
+    looks: Sight,
 ) -> Array:
     """Share [P] of the time in which somebody beside the subject is in the picture without their head: it is
     out of the frame, or somebody else or a thing is before it; and more by :data:`_ENDS` where the last frame
     is such a one: it is what is remembered of a take. Who is halved by a side of the frame or by a thing,
     head and all, counts for :data:`_HALF` of that, two without air between them for up to :data:`_CROWDED`,
     and whose feet are below the frame of a place, or of a size that shows the whole, for :data:`_FOOTLESS`.
-
-    seen_from: which of points [F, K, 3] no wall or thing hides, bool [P, F, K]
     """
     out, halves = np.zeros(camera.shape[:2]), np.zeros(camera.shape[:2])
     asked = subject.members or ((subject,) if subject.kind == "person" else ())
@@ -66,10 +64,11 @@ def company_cut(
     own = np.maximum(picture.depth[:, :, picture.names.index("pocket")], BEFORE)
     crowd = crowd_of(takes, (*asked, *subject.company), at, camera, axes)
     headless, behind = behind_bodies(crowd)
+    headless = headless & (not looks.by_pictures)
     there = np.zeros(crowd.depth.shape)  # how much each counts who is to be seen
     there[..., : len(asked)] = crowd.inside[..., : len(asked)]
     for k, one in enumerate(subject.company, len(asked)):
-        body, head, split, far = _beside_it(takes, one, at, camera, axes, seen_from)
+        body, head, split, far = _beside_it(takes, one, at, camera, axes, looks)
         head &= ~headless[..., k]
         near = np.clip((_FAR - far / own) / (_FAR - 1.0), 0.0, 1.0)
         there[..., k] = (body & (head | (behind[..., k] < _GONE))) * near
@@ -93,7 +92,7 @@ def _beside_it(
     at: NDArray[np.int64],
     camera: Array,
     axes: Array,
-    seen_from: Callable[[Array], Bools],
+    looks: Sight,
 ) -> tuple[Bools, Bools, Array, Array]:
     """Of somebody beside a subject, [P, F] each: whether some of the body is in the picture, and of the head,
     whoever may stand before them, how much the frame or a thing halves the body, 0..1, and how far away it
@@ -110,10 +109,11 @@ def _beside_it(
     if not body.any():
         return body, head, np.zeros(far.shape), far
     aside = _SIDE * axes[:, :, None, 0]  # to the picture's right
-    sides = seen_from(points[None, :, 3:4] + np.concatenate([-aside, aside], axis=2))
-    seen = seen_from(points)
-    body &= seen[:, :, 3:].any(axis=2) | sides.any(axis=2)
-    head &= seen[:, :, :2].any(axis=2) & ~behind_own_back(one, at, camera)
+    sides = looks.clear(points[None, :, 3:4] + np.concatenate([-aside, aside], axis=2), people=False)
+    body &= looks.clear(points[:, 3:], people=False).any(axis=2) | sides.any(axis=2)
+    head &= looks.shown((one.name,), points[:, None, :2], people=False)[:, :, 0].any(axis=2)
+    if not looks.by_pictures:
+        head &= ~behind_own_back(one, at, camera)
     split = np.maximum(_halved(xy[:, :, 3, 0], TRUNK * wide), sides[..., 0] != sides[..., 1])
     return body, head, split, far
 
@@ -149,19 +149,22 @@ def company_shown(
     at: NDArray[np.int64],
     camera: Array,
     axes: Array,
-    seen_from: Callable[[Array], Bools],
+    looks: Sight,
 ) -> dict[str, Array]:
     """Of a place with people in it: ``interest``, how many of their heads are seen, ``face``, how they are
     turned to the camera, what is seen (:func:`~vdsl.cinema.takes.visibility`) of who is seen best, less of
     who is there for a shorter time, and ``head_cropped`` and ``head_cut``, of the worst off; two thirds of
-    its ``visibility`` are that everybody is seen. seen_from: as above"""
+    its ``visibility`` are that everybody is seen."""
     people, focal = subject.company, takes.track.focal[:, at]
     here = np.stack([subject.holds(one)[at] for one in people], axis=1)  # [F, people]
     crowd = crowd_of(takes, people, at, camera, axes)
     eyes = np.stack([one.landmarks["eyes"][at] for one in people], axis=1)
     xy, depth = project(eyes[None], camera, axes, focal, takes.track.sensor)
-    seen = within(xy, depth, _EDGE) & seen_from(eyes) & ~behind_heads(crowd.eyes, depth, crowd.feet)
-    seen &= ~np.stack([behind_own_back(one, at, camera) for one in people], axis=-1)
+    names = tuple(one.name for one in people)
+    seen = within(xy, depth, _EDGE) & looks.shown(names, eyes[:, :, None], people=False)[..., 0]
+    if not looks.by_pictures:
+        seen &= ~behind_heads(crowd.eyes, depth, crowd.feet)
+        seen &= ~np.stack([behind_own_back(one, at, camera) for one in people], axis=-1)
     apart = 1.0 - _COVERED * covered(crowd)
     counts = here.sum(axis=1)
     share = np.where(counts > 0, (seen * apart * here).sum(axis=2) / np.maximum(counts, 1), 1.0)
@@ -172,7 +175,7 @@ def company_shown(
         faces += remembered(turned_among(one, at, camera), takes.window & here[:, k]) / len(people)
         found = pictured(takes, one, at, camera, axes)
         own = replace(takes, window=takes.window & here[:, k])
-        for name, value in _sight(own, one, at, found, seen_from).items():
+        for name, value in _sight(own, one, at, found, looks).items():
             sight[name] = np.maximum(sight.get(name, 0.0), stays[k] * value)
         cropped = np.maximum(cropped, broken(takes, one, found))
         there = within(found.of("pocket"), found.depth[:, :, found.names.index("pocket")], 0.0)
@@ -199,10 +202,10 @@ def _sight(
     one: Subject,
     at: NDArray[np.int64],
     picture: Picture,
-    seen_from: Callable[[Array], Bools],
+    looks: Sight,
 ) -> dict[str, Array]:
     """What is seen of somebody in a place: of head and chest, as tables and seats hide the rest."""
     index = [picture.names.index(name) for name in _UPPER]
     inside = within(picture.xy[:, :, index], picture.depth[:, :, index], 0.0)
     points = np.stack([one.landmarks[name][at] for name in _UPPER], axis=1)
-    return visibility(takes, inside, seen_from(points))
+    return visibility(takes, inside, looks.clear(points, people=False))

@@ -7,14 +7,13 @@ went by this more than by where in the frame a head is (docs/ranker.md).
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 import numpy as np
 from numpy.typing import NDArray
 
 from .bodies import behind_own_back
 from .covering import behind_bodies, crowd_of, lapped_heads
 from .framing import Array
+from .looking import Sight
 from .sizes import Size
 from .subject import Subject
 from .takes import Bools, Takes, remembered, turned, within
@@ -46,8 +45,7 @@ def legibility(
     at: NDArray[np.int64],
     camera: Array,
     axes: Array,
-    unhidden: Callable[[Array], Bools],
-    seen_from: Callable[[Array], Bools],
+    looks: Sight,
 ) -> dict[str, Array]:
     """Measures [P] of how well one reads who is there; of a thing, or without people, nothing is missed.
 
@@ -56,9 +54,6 @@ def legibility(
     middle of the time in which one of their hands is seen. ``heads``: share of everybody, over all the time,
     whose head is seen. ``together``: how near two heads are to each other in the picture, when they are
     furthest apart or but one is in it. In a place people count while they are in it.
-
-    unhidden: which of points [F, K, 3] no wall or thing hides, bool [P, F, K]; seen_from: which nobody else
-    hides either
     """
     own = subject.members or ((subject,) if subject.kind == "person" else ())
     people = (*own, *subject.company)
@@ -68,14 +63,16 @@ def legibility(
     here = np.ones((len(at), len(people)), bool)
     if not own:
         here = np.stack([subject.holds(one)[at] for one in people], axis=1)
-    looks = ((own, seen_from), (subject.company, unhidden))
+    sides = ((own, True), (subject.company, False))  # who hides these is asked below
     there = np.concatenate(
-        [_marks(takes, some, at, camera, axes, look) for some, look in looks if some], axis=2
+        [_marks(takes, some, at, camera, axes, looks, others) for some, others in sides if some], axis=2
     )
     there &= here[..., None]
     crowd = crowd_of(takes, people, at, camera, axes)
-    headless, _ = behind_bodies(crowd)
-    headless = headless | np.stack([behind_own_back(one, at, camera) for one in people], axis=-1)
+    headless = np.zeros(there.shape[:3], bool)
+    if not looks.by_pictures:
+        headless = np.stack([behind_own_back(one, at, camera) for one in people], axis=-1)
+        headless |= behind_bodies(crowd)[0]
     head = there[..., : len(_HEAD)]
     upper = np.asarray(there[..., : len(_HEAD) + 1].any(axis=-1))
     hands = np.asarray(there[..., -len(_HANDS) :].any(axis=-1))
@@ -103,15 +100,18 @@ def _marks(
     at: NDArray[np.int64],
     camera: Array,
     axes: Array,
-    look: Callable[[Array], Bools],
+    looks: Sight,
+    others: bool,
 ) -> Bools:
-    """Which of the marks of people are in the frame, and seen, [P, F, K, marks]."""
+    """Which of the marks of people are in the frame, and seen, [P, F, K, marks]. others: whether anybody may
+    hide them of whom lines of sight know"""
     points = np.stack([one.landmarks[name][at] for one in people for name in _MARKS], axis=1)
     xy, depth = project(points[None], camera, axes, takes.track.focal[:, at], takes.track.sensor)
     inner = np.tile(np.isin(_MARKS, _HEAD), len(people))
     there = np.where(inner, within(xy, depth, _BORDER), within(xy, depth, 0.0))
-    seen = np.asarray(np.logical_and(there, look(points)))
-    return seen.reshape((*seen.shape[:2], len(people), len(_MARKS)))
+    by_person = (len(at), len(people), len(_MARKS))
+    seen = looks.shown(tuple(one.name for one in people), points.reshape(*by_person, 3), others)
+    return np.asarray(there.reshape(len(there), *by_person) & seen)
 
 
 def _asked(size: Size) -> tuple[bool, ...]:

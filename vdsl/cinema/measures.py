@@ -21,8 +21,9 @@ from .composition import framing, size_error
 from .framing import Array
 from .gestures import act_missed, at_work, face_covered, gesture_lost, hands_missed
 from .legibility import legibility
+from .looking import Sight, sight_of
 from .score import geometry_score as geometry_score
-from .sight import backdrop_gaps, clear_lines, clear_of_people, hidden_walls
+from .sight import backdrop_gaps, hidden_walls
 from .subject import SIGHT, Subject
 from .takes import Bools, Picture, Takes, key_sample, mean_of, remembered, samples, turned, visibility, within
 from .together import everybody_measured, everybody_seen
@@ -118,20 +119,11 @@ def measure(takes: Takes, subject: Subject, world: World, fps: float) -> Measure
     values, inside = framing(takes, subject, at, picture)
     sight_index = [names.index(n) for n in SIGHT]
     sight = points[:, sight_index]
-    others = [(foot[at], crown[at], radius) for foot, crown, radius in takes.others]
+    own = frozenset((subject.name, *subject.heads)) if subject.kind == "person" else frozenset()
+    looks = sight_of(takes, own, world.solids, at, camera, axes, hidden)
 
-    def seen_from(points: Array) -> Bools:
-        clear = clear_lines(world.solids, camera, points, hidden, takes.ignore)
-        return np.asarray(clear & clear_of_people(camera, points, others))
-
-    def unhidden(points: Array) -> Bools:
-        return clear_lines(world.solids, camera, points, hidden, takes.ignore)
-
-    def lines(some: NDArray[np.int64], eyes: Array, points: Array) -> Bools:
-        return clear_lines(world.solids, eyes, points, hidden[some], takes.ignore)
-
-    seen = seen_from(sight)
-    values["view"] = everybody_seen(takes, subject, at, camera, axes, seen_from)
+    seen = looks.clear(sight)
+    values["view"] = everybody_seen(takes, subject, at, camera, axes, looks)
     values |= visibility(takes, inside[:, :, sight_index], seen)
     hands = [SIGHT.index(name) for name in ("hand_l", "hand_r")]
     in_sight = inside[:, :, sight_index] & seen
@@ -140,25 +132,25 @@ def measure(takes: Takes, subject: Subject, world: World, fps: float) -> Measure
     values["hands_missed"] = hands_missed(takes, subject, at, camera, in_sight[:, :, hands])
     values["gesture_lost"] = gesture_lost(takes, subject, at, picture, in_sight[:, :, hands])
     values["face_covered"] = face_covered(takes, subject, at, camera)
-    shown = _shown(takes, world, at, camera, axes, hidden, others)
+    shown = _shown(takes, at, camera, axes, looks)
     values["interest"] = _interest(takes, shown)
     somebody = in_sight.any(axis=-1) | inside[:, :, names.index("eyes")] | shown.any(axis=-1)
     at_end = _worth_ending_on(subject, at, in_sight[:, -1]) | inside[:, -1, names.index("eyes")]
     ends = at_end | shown[:, -1].any(axis=-1)
     values["empty"] = np.minimum(1.0 - somebody.mean(axis=1) + ENDS_EMPTY * ~ends, 1.0)
-    values["company_cut"] = company_cut(takes, subject, at, camera, axes, picture, unhidden)
-    values |= legibility(takes, subject, at, camera, axes, unhidden, seen_from)
-    values["floor_gap"] = floor_gaps(takes, world, subject.floor, at, camera, axes, lines)
-    looks = _ALL_OVER if subject.kind == "place" else _ASIDE
-    values["foreground"] = _foreground(takes, world, at, camera, axes, picture, hidden, looks)
+    values["company_cut"] = company_cut(takes, subject, at, camera, axes, picture, looks)
+    values |= legibility(takes, subject, at, camera, axes, looks)
+    values["floor_gap"] = floor_gaps(takes, world, subject.floor, at, camera, axes, looks)
+    across = _ALL_OVER if subject.kind == "place" else _ASIDE
+    values["foreground"] = _foreground(takes, at, camera, axes, picture, looks, across)
     values |= _motion(track, takes.roll, fps)
     values["face"] = remembered(turned(subject, at, camera), takes.window)
     if len(subject.members) > 1:
-        values |= everybody_measured(takes, subject, at, camera, axes, seen_from)
+        values |= everybody_measured(takes, subject, at, camera, axes, looks)
     if subject.kind == "place":  # nobody misses the edges of the box that stands for it
         values |= {name: np.zeros(len(camera)) for name in ("head_cut", "feet_cut", "thirds_error")}
         if subject.company:
-            values |= company_shown(takes, subject, at, camera, axes, unhidden)
+            values |= company_shown(takes, subject, at, camera, axes, looks)
     rows, key = np.arange(len(camera)), key_sample(takes, at)
     values["elevation"] = np.degrees(-rotation[rows, key, 1])
     values["height"] = camera[rows, key, 2] - subject.floor
@@ -168,6 +160,7 @@ def measure(takes: Takes, subject: Subject, world: World, fps: float) -> Measure
 
     near = takes.near if takes.near is not None else space.nearby(world.solids, camera)
     room = space.clearance(world.solids, near, hidden)
+    others = [(foot[at], crown[at], radius) for foot, crown, radius in takes.others]
     people = space.to_people(camera, others)
     values["clearance"] = np.minimum(np.minimum(room.object, room.shown), people)
     return Measured(values, hidden, room.shown, people)
@@ -196,22 +189,17 @@ def _missed(waist: Array, seen: Bools) -> Array:
 
 def _shown(
     takes: Takes,
-    world: World,
     at: NDArray[np.int64],
     camera: Array,
     axes: Array,
-    hidden: Bools,
-    others: list[tuple[Array, Array, float]],
+    looks: Sight,
 ) -> Bools:
     """Which of the other points that matter are in the frame and not hidden, [P, F, K]."""
     if not takes.interest:
         return np.zeros((*camera.shape[:2], 0), bool)
     points = np.stack([path[at] for path in takes.interest], axis=1)
-    F, K = points.shape[:2]  # they lie far apart: every one is looked at by itself
-    seen = clear_lines(
-        world.solids, np.repeat(camera, K, axis=1), points.reshape(F * K, 1, 3), hidden, takes.ignore
-    ).reshape(len(camera), F, K)
-    seen &= clear_of_people(camera, points, others)
+    # they lie far apart: every one is looked at by itself
+    seen = np.concatenate([looks.clear(points[:, k : k + 1]) for k in range(points.shape[1])], axis=2)
     xy, depth = project(points[None], camera, axes, takes.track.focal[:, at], takes.track.sensor)
     return within(xy, depth, 0.02) & seen
 
@@ -226,33 +214,29 @@ def _interest(takes: Takes, shown: Bools) -> Array:
 
 def _foreground(
     takes: Takes,
-    world: World,
     at: NDArray[np.int64],
     camera: Array,
     axes: Array,
     picture: Picture,
-    hidden: Bools,
-    looks: Array,
+    looks: Sight,
+    across: Array,
 ) -> Array:
     """Looks [L, 2] across the frame on some of the sampled frames: whether something is in the way half way
     to the subject and, for less, on the last of the way to it."""
     some = np.unique((np.arange(_LOOKED_AT) * ((len(at) - 1) / (_LOOKED_AT - 1))).round().astype(int))
     track = takes.track
-    others = [(foot[at[some]], crown[at[some]], radius) for foot, crown, radius in takes.others]
     far = np.maximum(picture.depth[:, some, picture.names.index("pocket")], 0.2)
-    ax, blocked = axes[:, some, None], np.zeros((len(camera), len(some), len(looks)))
+    ax, blocked = axes[:, some, None], np.zeros((len(camera), len(some), len(across)))
     for share, counts in _NEAR:
         depth = share * far
         half = depth[..., None, None] / (2 * track.focal[:, at[some], None, None])
         points = (
             camera[:, some, None]
             + depth[..., None, None] * ax[..., 2, :]
-            + half * track.sensor[0] * looks[:, :1] * ax[..., 0, :]
-            + half * track.sensor[1] * looks[:, 1:] * ax[..., 1, :]
+            + half * track.sensor[0] * across[:, :1] * ax[..., 0, :]
+            + half * track.sensor[1] * across[:, 1:] * ax[..., 1, :]
         )
-        seen = clear_lines(world.solids, camera[:, some], points, hidden, takes.ignore)
-        seen &= clear_of_people(camera[:, some], points, others)
-        blocked = np.maximum(blocked, np.where(seen, 0.0, counts))
+        blocked = np.maximum(blocked, np.where(looks.clear(points, some=some), 0.0, counts))
     share = blocked.mean(axis=2)
     return np.asarray(np.maximum(share.mean(axis=1), ENDS_BEHIND * share[:, -1]))
 

@@ -5,6 +5,7 @@ landmarks are in the picture.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,6 +26,27 @@ _ENDS = 0.35
 
 
 @dataclass(frozen=True, eq=False)
+class Pictures:
+    """What small pictures of P takes show in the F frames that are measured.
+
+    depth: float32 [P, F, H, W], metres along the optical axis, inf where nothing is
+    what: uint8 [P, F, H, W], NOTHING, a THING, a thing that is MOVED, or FIRST and on one of the people; what
+        is filmed itself counts as NOTHING
+    people: their names, in this order; over: of them over whose shoulders it looks, who are to be near
+    """
+
+    depth: NDArray[np.float32]
+    what: NDArray[np.uint8]
+    people: tuple[str, ...]
+    over: tuple[str, ...] = ()
+
+    NOTHING: ClassVar[int] = 0
+    THING: ClassVar[int] = 1
+    MOVED: ClassVar[int] = 2
+    FIRST: ClassVar[int] = 3
+
+
+@dataclass(frozen=True, eq=False)
 class Takes:
     """P takes to measure.
 
@@ -34,6 +56,7 @@ class Takes:
     ignore: object id whose boxes hide nothing (the thing filmed)
     interest: [T, 3] each, other points one would like to see
     view: one of :data:`vdsl.lang.ir.VIEWS`, or ""
+    pictures: what they show, where they were drawn
     near: the boxes near the cameras at the sampled frames, where somebody has looked already
     """
 
@@ -48,6 +71,7 @@ class Takes:
     interest: tuple[Array, ...] = ()
     near: space.Nearby | None = None
     view: str = ""
+    pictures: Pictures | None = None
 
 
 def samples(frames: int) -> NDArray[np.int64]:

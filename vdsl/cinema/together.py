@@ -7,8 +7,6 @@ subject with members, who acts first of all.
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -17,6 +15,7 @@ from .composition import broken
 from .covering import behind_heads, spread
 from .framing import Array
 from .gestures import act_missed, face_covered, gesture_lost, hands_missed
+from .looking import Sight
 from .sight import clear_of_people
 from .subject import SIGHT, Subject
 from .takes import Bools, Takes, mean_of, pictured, remembered, turned, visibility, within
@@ -39,7 +38,7 @@ def everybody_seen(
     at: NDArray[np.int64],
     camera: Array,
     axes: Array,
-    seen_from: Callable[[Array], Bools],
+    looks: Sight,
 ) -> Array:
     """Whether all heads are in the frame and seen, or the near head of a view over a shoulder is where it
     belongs: a share of the window, [P]; 1 for a single one."""
@@ -49,8 +48,11 @@ def everybody_seen(
         return np.ones(len(camera))
     points = np.stack([head[at] for head in subject.heads.values()], axis=1)
     xy, depth = project(points[None], camera, axes, takes.track.focal[:, at], takes.track.sensor)
-    aside = spread(xy, takes.track.focal[:, at], takes.track.sensor)
-    seen = within(xy, depth, 0.03) & seen_from(points) & ~behind_heads(aside, depth)
+    seen = within(xy, depth, 0.03) & looks.clear(points)
+    if looks.by_pictures:
+        seen &= looks.shown(tuple(subject.heads), points[:, :, None], people=True)[..., 0]
+    else:
+        seen &= ~behind_heads(spread(xy, takes.track.focal[:, at], takes.track.sensor), depth)
     return _held(np.asarray(seen.all(axis=-1)), takes.window)
 
 
@@ -89,12 +91,9 @@ def everybody_measured(
     at: NDArray[np.int64],
     camera: Array,
     axes: Array,
-    seen_from: Callable[[Array], Bools],
+    looks: Sight,
 ) -> dict[str, Array]:
-    """Of every member what :func:`~vdsl.cinema.measures.measure` would say, and of these the worst.
-
-    seen_from: which of points [F, K, 3] nothing but the members hides, bool [P, F, K]
-    """
+    """Of every member what :func:`~vdsl.cinema.measures.measure` would say, and of these the worst."""
     found: list[dict[str, Array]] = []
     for one in subject.members:
         picture = pictured(takes, one, at, camera, axes)
@@ -107,7 +106,7 @@ def everybody_measured(
             if other is not one
             for foot, crown, radius in pillars(other)
         ]
-        seen = seen_from(points) & clear_of_people(camera, points, bodies)
+        seen = looks.clear(points) & clear_of_people(camera, points, bodies)
         found.append(visibility(takes, inside, seen) | {"head_cropped": broken(takes, one, picture)})
         shown = (inside & seen)[:, :, [SIGHT.index(name) for name in ("hand_l", "hand_r")]]
         found[-1]["act_missed"] = act_missed(one, at, inside & seen)

@@ -5,14 +5,13 @@ Assumes floors as rectangles. Outdoors there is ground all around.
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 import numpy as np
 from numpy.typing import NDArray
 
 from runtime.world import World
 
 from .framing import Array
+from .looking import Sight
 from .takes import Bools, Takes
 
 #: Where in the lower part of the frame, −1..1, it is looked; y is down.
@@ -30,13 +29,12 @@ def floor_gaps(
     at: NDArray[np.int64],
     camera: Array,
     axes: Array,
-    seen_from: Callable[[NDArray[np.int64], Array, Array], Bools],
+    looks: Sight,
 ) -> Array:
     """Share [P] of looks at the lower part of the picture that go past the floors of a set indoors into
     nothing, first, halfway and last; or :data:`_ENDS` of the share in the last frame where that is more.
 
-    floor: height of the one the subject is on; seen_from: of some takes [N], cameras [N, F, 3] and points
-    [N, F, K, 3], which of these no wall or thing hides, bool [N, F, K]
+    floor: height of the one the subject is on
     """
     if world.outdoor or not world.floors:
         return np.zeros(len(camera))
@@ -53,8 +51,7 @@ def floor_gaps(
     points = eye + away[..., None] * rays
     past = down & ~_on_floors(world, points)
     p, f, k = np.nonzero(past)  # line by line: most looks end on a floor, and these lie far apart
-    lines = points[p, f, k][:, None, None]
-    past[p, f, k] = seen_from(p, camera[p, some[f]][:, None], lines)[:, 0, 0]
+    past[p, f, k] = looks.clear_each(p, some[f], points[p, f, k])
     share = past.mean(axis=2)
     return np.asarray(np.maximum(share.mean(axis=1), _ENDS * share[:, -1]))
 

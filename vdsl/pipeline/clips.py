@@ -55,7 +55,7 @@ class Clip:
     kind: ``designer``, ``passed-over``, ``perturbed`` or ``mistyped``; opinion: the designer's, as
     :func:`vdsl.pipeline.designer.judged`; words: movement, size and angle as classes, None for what it does
     not show clearly; frames: what is known of each judged frame in numbers; meant: whether its subject is to
-    be in the picture of that; about: what it is about
+    be in the picture of that; about: what it is about; shot: of which it is a take
     doubtful: whether it is bad for reasons that no picture shows, or hardly bad; bare: whether its guides are
     enough
     """
@@ -68,6 +68,7 @@ class Clip:
     frames: dict[str, list[float]] = field(default_factory=dict)
     meant: list[int] = field(default_factory=list)
     about: About = _NOTHING
+    shot: Shot | None = None
     doubtful: bool = False
     bare: bool = False
 
@@ -89,9 +90,8 @@ def clips_of(scene: Scene, rng: np.random.Generator) -> list[Clip]:
         for i in kept:
             good = grid.cameras[i]
             if left and rng.random() < _PASSED_OVER:
-                bad: Clip | None = _passed_over(
-                    scene, shot, grid, grid.cameras[left[0]], float(opinion[left[0]])
-                )
+                worse = grid.cameras[left[0]]
+                bad: Clip | None = _proposed(scene, shot, grid, worse, float(opinion[left[0]]))
                 left = left[1:]
             else:
                 bad = _spoilt(scene, shot, grid, good, float(opinion[i]), rng)
@@ -104,32 +104,38 @@ def clips_of(scene: Scene, rng: np.random.Generator) -> list[Clip]:
         shown = {id(clip.camera) for clip in made}
         for camera, thought in zip(grid.cameras, opinion, strict=True):
             if id(camera) not in shown and scene.split == "train":
-                made.append(_bare(scene, shot, grid, camera, float(thought)))
+                made.append(replace(_proposed(scene, shot, grid, camera, float(thought)), bare=True))
         about = about_of(shot, grid, scene.filming, scene.staged)
         for clip in made:
             story = grid.story[clip.camera.story]
             subject, at = subject_of(shot, story, scene.filming), segment_frames(story.frames)
             told = frame_hints_of(clip.camera, subject, at)
-            out.append(replace(clip, frames=told, meant=meant(clip.camera, at), about=about))
+            out.append(replace(clip, frames=told, meant=meant(clip.camera, at), about=about, shot=shot))
     return out
 
 
-def _passed_over(
-    scene: Scene, shot: Shot, grid: ProposalGrid, camera: CameraProposal, opinion: float
-) -> Clip:
-    """A proposal that the designer left."""
-    wrong = sum(bool(found) for found in flaws(camera.measures).values())
-    strength = min(max(wrong, 1) * _A_FAULT, 1.0)
-    words = _read(scene, shot, grid, camera)
-    return Clip(camera, "passed-over", strength, opinion, words, doubtful=not _seen(camera, opinion))
+def as_seen(clip: Clip, camera: CameraProposal) -> Clip:
+    """A clip as its pictures turned out, by what is measured of them in ``camera``: one that was not spoilt
+    is good or bad by the opinion of now; of one that was, and is not worse any more, nobody knows."""
+    thought = float(judged([camera])[0])
+    seen = replace(clip, camera=camera, opinion=thought)
+    if clip.kind not in _KINDS:
+        return _by_opinion(seen)
+    return replace(seen, doubtful=clip.doubtful or clip.opinion < BAR * (1 - _LOST) <= thought)
 
 
-def _bare(scene: Scene, shot: Shot, grid: ProposalGrid, camera: CameraProposal, opinion: float) -> Clip:
-    """A proposal that is not drawn: good or bad as the designer says, picked or not."""
-    if opinion < BAR:
-        clip = _passed_over(scene, shot, grid, camera, opinion)
-        return replace(clip, bare=True, doubtful=clip.doubtful or opinion >= BAR * (1 - _LOST))
-    return Clip(camera, "designer", 0.0, opinion, _read(scene, shot, grid, camera), bare=True)
+def _by_opinion(clip: Clip) -> Clip:
+    """A proposal as the designer's opinion has it: good, or passed over."""
+    if clip.opinion >= BAR:
+        return replace(clip, kind="designer", strength=0.0, doubtful=False)
+    wrong = sum(bool(found) for found in flaws(clip.camera.measures).values())
+    doubtful = not _seen(clip.camera, clip.opinion) or clip.opinion >= BAR * (1 - _LOST)
+    return replace(clip, kind="passed-over", strength=min(max(wrong, 1) * _A_FAULT, 1.0), doubtful=doubtful)
+
+
+def _proposed(scene: Scene, shot: Shot, grid: ProposalGrid, camera: CameraProposal, opinion: float) -> Clip:
+    """A proposal, picked or not: good or bad as the designer says."""
+    return _by_opinion(Clip(camera, "designer", 0.0, opinion, _read(scene, shot, grid, camera)))
 
 
 def _seen(camera: CameraProposal, opinion: float) -> bool:

@@ -1,8 +1,9 @@
 """The discriminator's training set: random stories, filmed well and filmed badly.
 
-Positives are what the virtual designer picks of a shot's proposals (:mod:`vdsl.pipeline.designer`);
-negatives are proposals passed over, picks shaken about at graded strengths, and picks made to show no type,
-as many as there are positives (:mod:`vdsl.pipeline.clips`). Every draw is keyed by the seed and the
+Positives are what the virtual designer picks of a shot's proposals (:mod:`vdsl.pipeline.designer`), and still
+does when they are drawn (:mod:`vdsl.pipeline.drawn`); negatives are proposals passed over, picks shaken about
+at graded strengths, and picks made to show no type, about as many as there are positives
+(:mod:`vdsl.pipeline.clips`). Every draw is keyed by the seed and the
 story's number, whole stories go to disk in their order, and the set itself says which were: so it is the same
 whether or not its making was stopped, and however many processes make it.
 """
@@ -35,14 +36,15 @@ from runtime.raster.types import LOOK_VERSION
 
 from ..propose.types import ProposalGrid, StoryProposal
 from .casting import Scene, Troupe
-from .clips import clips_of
+from .clips import Clip, as_seen, clips_of
+from .drawn import as_drawn
 from .filming import SEGMENTS, Camerawork, Seen
 from .hints import hints_of
 from .labels import WORDS
 from .progress import Progress, Silence
 
 #: Raised when other takes or labels come of the same seed.
-_RECIPE = 35
+_RECIPE = 36
 #: Proposals of a shot in most stories, and in every so many-th: of many, more are looked for beside the best
 #: and off the grid, as where ``compile`` looks for a take.
 _PROPOSALS, _MANY, _EVERY = 8, 32, 5
@@ -225,20 +227,24 @@ def _filmed(scene: Scene, making: _Making, camerawork: Camerawork) -> _Filmed | 
     count = sum(making.every or not clip.bare for clip in clips) if making.pictured(scene) else 0
     size = making.size
     drawn: list[Seen] = []
+    seen: list[Clip] = []
     for part, pictures in ((clips[:count], True), (clips[count:], False)):
         for begin in range(0, len(part), _DRAWN_AT_ONCE):
             some = part[begin : begin + _DRAWN_AT_ONCE]
             cameras, about = tuple(clip.camera for clip in some), [clip.about for clip in some]
             stories, style = stories_of(scene.grids), scene.shots[0].style
-            drawn.append(
-                camerawork.judge_frames(
-                    scene.staged, style, stories, cameras, (size, size), about=about, pictures=pictures
-                )
+            found = camerawork.judge_frames(
+                *(scene.staged, style, stories, cameras, (size, size)),
+                about=about,
+                pictures=pictures,
+                depths=True,
             )
-    frames = [seen.frames for seen in drawn if seen.frames.size]
-    guides = joined([seen.guides for seen in drawn if seen.guides is not None])
+            seen += _as_seen(scene, some, found)
+            drawn.append(Seen(found.frames, found.guides))
+    frames = [found.frames for found in drawn if found.frames.size]
+    guides = joined([found.guides for found in drawn if found.guides is not None])
     labels = []
-    for k, clip in enumerate(clips):
+    for k, clip in enumerate(seen):
         c = clip.camera
         told = {
             "story": scene.number,
@@ -257,6 +263,20 @@ def _filmed(scene: Scene, making: _Making, camerawork: Camerawork) -> _Filmed | 
         labels.append((good, *clip.words, group, clip.strength, scene.split, told, guides[k : k + 1]))
     empty = np.zeros((0, SEGMENTS, size, size, 3), np.uint8)
     return _Filmed(np.concatenate(frames) if frames else empty, labels)
+
+
+def _as_seen(scene: Scene, clips: list[Clip], drawn: Seen) -> list[Clip]:
+    """Clips as their pictures turned out."""
+    out = list(clips)
+    for shot in scene.shots:
+        rows = [i for i, clip in enumerate(clips) if clip.shot is shot]
+        if rows:
+            cameras = [clips[i].camera for i in rows]
+            stories = stories_of(scene.grids)
+            found = as_drawn(shot, stories, scene.filming, scene.staged, cameras, drawn.only(rows))
+            for i, camera in zip(rows, found, strict=True):
+                out[i] = as_seen(clips[i], camera)
+    return out
 
 
 def stories_of(grids: tuple[ProposalGrid, ...]) -> tuple[StoryProposal, ...]:

@@ -1,7 +1,8 @@
 """The virtual designer: which proposals somebody with an eye for framing would keep, by geometry alone.
 
 It stands in for the people who picked the paper's positives. Assumes measured proposals
-(:mod:`vdsl.cinema.measures`) and never sees a picture. Two steps, as with people: what has a fault is out;
+(:mod:`vdsl.cinema.measures`), by lines of sight or, once they are drawn, by what hides what in their pictures
+(:mod:`vdsl.pipeline.drawn`); colours it never sees. Two steps, as with people: what has a fault is out;
 what is left is put in order by how well it is composed, and of several that look alike only the first is
 kept. A weak criterion is not made up for by strong ones: the order is by their weighted geometric mean,
 other than :mod:`vdsl.cinema.score`, which is a sum.

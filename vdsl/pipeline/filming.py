@@ -45,10 +45,20 @@ def not_drawn(staged: StagedScene, camera: CameraProposal) -> NDArray[np.bool_]:
 
 
 class Seen(NamedTuple):
-    """What the judge sees of P proposals: frames uint8 [P, k, H, W, 3], and their guides if asked for."""
+    """What the judge sees of P proposals: frames uint8 [P, k, H, W, 3], and their guides if asked for; and
+    ids of objects, int32, and metres along the axis, float32 [P, k, H, W], if asked for."""
 
     frames: NDArray[np.uint8]
     guides: Guides | None
+    ids: NDArray[np.int32] | None = None
+    depth: NDArray[np.float32] | None = None
+
+    def only(self, rows: list[int]) -> Seen:
+        """Ids and depths of some of the proposals."""
+        ids, depth = self.ids, self.depth
+        return Seen(
+            self.frames[:0], None, None if ids is None else ids[rows], None if depth is None else depth[rows]
+        )
 
 
 class Camerawork:
@@ -69,11 +79,13 @@ class Camerawork:
         which: Sequence[int] = range(SEGMENTS),
         about: Sequence[About] | None = None,
         pictures: bool = True,
+        depths: bool = False,
     ) -> Seen:
         """Frames for ranking of P proposals; shared moments are skinned once.
 
         which: of the eight, those that are wanted; about: what each camera is about, for guides;
-            pictures: whether to shade, or frames of 0 x 0 will do
+            pictures: whether to shade, or frames of 0 x 0 will do; depths: with guides, whether ids and
+            depths are wanted too
         """
         views, moments = self._segments(staged, stories, cameras, which)
         renderer = self._renderer(staged, style)
@@ -92,7 +104,14 @@ class Camerawork:
         )
         roles = np.repeat(roles_of(staged, about), len(which), axis=0)
         at = pointed(views.camera, places, size)
-        drawn = renderer.render(moments, views, size, roles=roles, pictures=pictures, pixels=at.pixels)
+        drawn = renderer.render(
+            *(moments, views, size),
+            ids=depths,
+            depth=depths,
+            roles=roles,
+            pictures=pictures,
+            pixels=at.pixels,
+        )
         assert drawn.guides is not None
         assert drawn.probed is not None
         frames = drawn.color.reshape(len(cameras), len(which), *drawn.color.shape[1:])
@@ -101,7 +120,10 @@ class Camerawork:
         room = room_of(staged.world.solids, views.camera.position, hidden, places)
         gone = np.column_stack([paces, room, works])
         told = guides_of(drawn.guides, drawn.probed, at, views.camera, places, opened, gone, which, SEGMENTS)
-        return Seen(frames, told)
+        if drawn.ids is None or drawn.depth is None:
+            return Seen(frames, told)
+        by_shot = (len(cameras), len(which), *drawn.ids.shape[1:])
+        return Seen(frames, told, drawn.ids.reshape(by_shot), drawn.depth.reshape(by_shot))
 
     def judge_ids(
         self,

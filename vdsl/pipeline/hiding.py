@@ -22,11 +22,12 @@ from ranker.infer import Ranker
 
 from ..cinema.score import geometry_score, parts
 from ..lang.ir import Shot
-from ..propose.types import ProposalGrid
+from ..propose.types import CameraProposal, ProposalGrid
 from .ahead import one_ahead
 from .casting import TEST_EVERY, Scene, Troupe
 from .dataset import made
 from .designer import judged, picks
+from .drawn import as_drawn
 from .filming import Camerawork, Seen
 from .guides import about_of
 from .judging import prior
@@ -40,7 +41,7 @@ _AT_ONCE = 16
 
 @dataclass(frozen=True)
 class Scored:
-    """The proposals of a shot [P]: what the ranker says of each, and what the designer does.
+    """The proposals of a shot [P]: what the ranker says of each, and the designer, who has seen them drawn.
 
     picked: the one the designer likes best; choices: all that may be picked, no two alike, best first;
         opinions: of all, as :func:`vdsl.pipeline.designer.judged`
@@ -88,11 +89,12 @@ def hide(
                 break
             if name in numbers:
                 continue
-            best = picks(grid.cameras, _CHOICES)
-            if not best:
+            if not picks(grid.cameras, 1):
                 continue
             begun = perf_counter()
-            scored = _scored(name, scene, shot, grid, best, ranker, camerawork, pictures)
+            scored = _scored(name, scene, shot, grid, ranker, camerawork, pictures)
+            if scored is None:
+                continue
             file.write(json.dumps(asdict(scored)) + "\n")
             file.flush()
             done.append(scored)
@@ -155,11 +157,11 @@ def _scored(
     scene: Scene,
     shot: Shot,
     grid: ProposalGrid,
-    choices: list[int],
     ranker: Ranker,
     camerawork: Camerawork,
     pictures: bool,
-) -> Scored:
+) -> Scored | None:
+    """Of a shot; None where there is none that the designer would pick."""
     logits: list[float] = []
     margins: list[float] = []
     size = ranker.config.size
@@ -170,11 +172,17 @@ def _scored(
         cameras = grid.cameras[begin : begin + _AT_ONCE]
         about = [subject] * len(cameras)
         return camerawork.judge_frames(
-            scene.staged, shot.style, grid.story, cameras, (size, size), about=about, pictures=pictures
+            *(scene.staged, shot.style, grid.story, cameras, (size, size)),
+            about=about,
+            pictures=pictures,
+            depths=True,
         )
 
-    for _, seen in one_ahead(drawn, range(0, len(grid.cameras), _AT_ONCE)):
+    found: list[CameraProposal] = []
+    for begin, seen in one_ahead(drawn, range(0, len(grid.cameras), _AT_ONCE)):
         assert seen.guides is not None
+        cameras = grid.cameras[begin : begin + _AT_ONCE]
+        found += as_drawn(shot, grid.story, scene.filming, scene.staged, cameras, seen)
         scores = ranker.score(seen.frames, seen.guides) if pictures else ranker.by_guides(seen.guides)
         logits += [round(float(m), 5) for m in scores.logit]
         margins += [round(float(m), 5) for m in scores.margin]
@@ -182,7 +190,10 @@ def _scored(
     alone = {k: [round(float(v), 4) for v in values] for k, values in parts(measures).items()}
     alone["geometry score"] = [round(geometry_score(c.measures), 4) for c in grid.cameras]
     priors = [round(float(prior(c.measures)), 4) for c in grid.cameras]
-    opinions = [round(float(o), 5) for o in judged(grid.cameras)]
+    choices = picks(found, _CHOICES)
+    if not choices:
+        return None
+    opinions = [round(float(o), 5) for o in judged(found)]
     return Scored(name, choices[0], choices, opinions, logits, margins, priors, alone)
 
 

@@ -20,7 +20,7 @@ from ..cinema.score import geometry_scores
 from ..cinema.sizes import Size, size_of
 from ..cinema.space import Stage, nearby, stage_of
 from ..cinema.subject import Subject
-from ..cinema.takes import Takes, samples
+from ..cinema.takes import Pictures, Takes, samples
 from ..cinema.track import CameraTrack
 from ..lang.ir import Shot
 from .candidates import Shooting
@@ -221,10 +221,14 @@ def try_cameras(
 
 
 def measured_anew(
-    shot: Shot, story: StoryProposal, filming: Filming, cameras: Sequence[CameraProposal]
+    shot: Shot,
+    story: StoryProposal,
+    filming: Filming,
+    cameras: Sequence[CameraProposal],
+    pictures: Pictures | None = None,
 ) -> list[CameraProposal]:
     """Cameras of one story with the measures and the hidden walls of the tracks they have now, whatever was
-    done to these since they were proposed."""
+    done to these since they were proposed. pictures: what they show, if they were drawn"""
     if not cameras:
         return []
     subject, tracks = subject_of(shot, story, filming), [c.track for c in cameras]
@@ -237,7 +241,7 @@ def measured_anew(
     )
     window, key = np.stack([c.window for c in cameras]), np.array([c.key for c in cameras])
     takes = _takes(shot, subject, track, tuple(c.scale for c in cameras), window, key, story, filming)
-    found = measure(takes, subject, filming.world, filming.fps)
+    found = measure(replace(takes, pictures=pictures), subject, filming.world, filming.fps)
     scores = geometry_scores(found.values)
     return [
         replace(

@@ -1,0 +1,116 @@
+"""What pictures show in place of lines of sight: what hides whom, by how much, and what is asked of whom."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from company import FILMING, FRAMES, takes_of, two
+from filmset import shot, world
+
+from runtime.world import World
+from vdsl.cinema.looking import Lines, Shown
+from vdsl.cinema.measures import measure
+from vdsl.cinema.takes import Pictures, samples
+from vdsl.propose.subjects import subject_of
+
+EYE, AIM = (3.5, 0.0, 1.4), (0.0, 0.0, 1.3)
+SIDE = 64
+PEOPLE = ("anna", "ben")
+
+
+def pictures(what: int, near: float, rows: slice = slice(None), over: tuple[str, ...] = ()) -> Pictures:
+    """Of one take: so much is so near in these rows, and nothing behind it."""
+    count = len(samples(FRAMES))
+    depth = np.full((1, count, SIDE, SIDE), np.inf, np.float32)
+    kinds = np.zeros((1, count, SIDE, SIDE), np.uint8)
+    depth[:, :, rows], kinds[:, :, rows] = near, what
+    return Pictures(depth, kinds, PEOPLE, over)
+
+
+def measured(shown: Pictures | None, ground: World = FILMING.world) -> dict[str, float]:
+    subject = subject_of(shot(scale="medium"), two((0.0, 0.9)), FILMING)
+    takes = replace(takes_of("medium", "person", EYE, AIM), pictures=shown)
+    return {k: float(v[0]) for k, v in measure(takes, subject, ground, 24.0).values.items()}
+
+
+@pytest.mark.parametrize(
+    ("what", "near", "seen"),
+    [
+        (Pictures.THING, 2.0, False),
+        (Pictures.THING, 3.4, True),  # as near as what one sits on
+        (Pictures.MOVED, 3.2, True),  # in the hand
+        (Pictures.MOVED, 2.0, False),
+        (Pictures.NOTHING, 2.0, True),  # what is filmed
+        (Pictures.FIRST, 2.0, True),  # her own body, of which what is behind it is no less there
+        (Pictures.FIRST + 1, 2.0, False),
+    ],
+)
+def test_what_is_drawn_before_somebody_hides_them(what: int, near: float, seen: bool) -> None:
+    found = measured(pictures(what, near))
+    assert found["visibility"] == (1.0 if seen else 0.0)
+    assert found["head_visible"] == (1.0 if seen else 0.0)
+
+
+def test_a_branch_that_is_no_box_is_in_the_way() -> None:
+    clear, hidden = (measured(shown) for shown in (None, pictures(Pictures.THING, 1.0)))
+    assert clear["foreground"] == 0.0
+    assert hidden["foreground"] == 1.0
+    assert measured(pictures(Pictures.THING, 1.0, slice(0, SIDE // 8)))["foreground"] == 0.0
+
+
+def test_a_head_behind_the_own_back_is_none_though_no_line_is_cut() -> None:
+    assert measured(None)["heads"] == 1.0
+    bent = measured(pictures(Pictures.FIRST, 3.0))  # her body, half a metre before where her head is
+    assert bent["legible"] == 0.0
+    assert bent["heads"] < 0.6
+    assert measured(pictures(Pictures.FIRST, 3.4))["legible"] > 0.75
+
+
+def test_over_whose_shoulder_one_looks_is_not_in_the_way_but_hides_a_face() -> None:
+    ben = Pictures.FIRST + 1
+    found = measured(pictures(ben, 1.0, over=("ben",)))
+    assert found["foreground"] == 0.0
+    assert found["visibility"] == 1.0
+    assert found["legible"] == 0.0
+    assert measured(pictures(ben, 1.0))["foreground"] == 1.0
+
+
+def test_pictures_and_lines_agree_of_a_plain_thing_in_the_way() -> None:
+    """A board before her legs, as a line meets it and as it is drawn."""
+    board = world(boxes=((1.5, 0.0, 1.0, 0.02, 3.0, 0.3, 0.0),))
+    by_lines = measured(None, board)
+    high = [1.4 + (z - 1.4) * (3.5 / 2.0) for z in (0.7, 1.3)]  # of where it is seen, at her distance
+    assert by_lines["visibility"] < 1.0
+    lens = takes_of("medium", "person", EYE, AIM).track
+    rows = sorted(_row(lens.focal[0, 0], lens.sensor[1], z) for z in high)
+    drawn = measured(pictures(Pictures.THING, 2.0, slice(max(rows[0], 0), rows[1])))
+    assert drawn["visibility"] == pytest.approx(by_lines["visibility"], abs=0.13)
+
+
+def _row(focal: float, sensor: float, height: float) -> int:
+    """Of a point over where she stands."""
+    down = np.arctan2(EYE[2] - height, EYE[0]) - np.arctan2(EYE[2] - AIM[2], EYE[0])
+    return round(float(SIDE * (0.5 + np.tan(down) * focal / sensor)))
+
+
+def test_one_look_by_lines_and_by_pictures_asks_of_the_same_places() -> None:
+    camera = np.tile(np.array(EYE), (1, 8, 1))
+    axes = np.tile(np.array([[0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [-1.0, 0.0, 0.0]]), (1, 8, 1, 1))
+    shown = Shown(
+        pictures(Pictures.THING, 2.0), camera, axes, np.full((1, 8), 35.0), (36.0, 36.0), frozenset()
+    )
+    lines = Lines(
+        world(boxes=((1.5, 0.0, 1.4, 0.02, 9.0, 9.0, 0.0),)).solids, camera, np.zeros((1, 0), bool), []
+    )
+    behind, before = np.array([-1.0, 0.2, 1.3]), np.array([2.5, 0.2, 1.3])
+    for looks in (shown, lines):
+        one_by_one = looks.clear_each(np.zeros(2, int), np.array([0, 7]), np.stack([behind, before]))
+        assert one_by_one.tolist() == [False, True]
+        points = np.tile(np.stack([behind, before]), (8, 1, 1))
+        assert looks.clear(points).tolist() == [[[False, True]] * 8]
+        some = np.array([0, 3])
+        assert looks.clear(points[None, :2], some=some).tolist() == [[[False, True]] * 2]
+    away = np.tile(np.array([5.0, 0.0, 1.4]), (8, 1, 1))  # behind the camera nothing is hidden
+    assert shown.clear(away).all()

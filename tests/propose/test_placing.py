@@ -11,7 +11,7 @@ from vdsl.lang.ir import Target
 from vdsl.lang.source import Span
 from vdsl.pipeline.compile import stage_acts
 from vdsl.pipeline.script import ScriptError, check_source
-from vdsl.propose.places import approach, near_on_foot
+from vdsl.propose.places import approach, near_on_foot, open_between
 from vdsl.propose.state import SceneState
 
 ANNA = Target("character", ("anna",), "anna", Span(Source("x.vds", ""), 0, 0))
@@ -66,6 +66,18 @@ def test_nobody_comes_up_to_somebody_from_behind_the_shelf_they_look_at() -> Non
     assert stop is not None
     assert 0.7 < math.dist(anna.position[:2], (stop.x, stop.y)) < 1.5
     assert near_on_foot(state.world, anna.position, (stop.x, stop.y, stop.z))
+
+
+def test_nobody_steps_up_to_somebody_through_a_tree() -> None:
+    """Who does something to somebody comes nearer than they stand at first, straight on."""
+    state = opened("park.lawn", "anna at tree_2 facing tree_2", "ben at bench")
+    anna, ben = state.actors["anna"], state.actors["ben"]
+    stop = approach(ANNA, state, "ben", ben.position)
+    assert stop is not None
+    assert open_between(state.world, anna.position, (stop.x, stop.y, stop.z))
+    tree = next(item for item in state.world.objects if item.path[-1] == "tree_2")
+    x, y = (2 * c - a for c, a in zip(tree.centre[:2], anna.position[:2], strict=True))
+    assert not open_between(state.world, anna.position, (x, y, 0.0)), "on its other side"
 
 
 def test_two_who_are_placed_by_each_other_are_an_error() -> None:

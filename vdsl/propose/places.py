@@ -29,6 +29,7 @@ _SIDES = (math.pi / 2, -math.pi / 2, 2.0, -2.0)
 _EYES = 0.93  # of the standing height
 _BESIDE = 0.16  # metres between things on a table top
 _AT_TABLE, _FACES = 0.75, 0.5  # metres from a seat to what it is drawn up to; how far it faces it, a cosine
+_TO_A_SEAT, _STEP = 0.45, 0.1  # metres to somebody that a seat takes, and at which it is looked on the way
 _BY_SOMEBODY = 2.2  # metres to somebody at whose side, or opposite of whom, one sits
 
 Point = tuple[float, float, float]
@@ -395,11 +396,15 @@ def with_somebody(name: str, who: str, state: SceneState, beside: bool) -> Stop 
     def near(goal: Point) -> bool:
         return near_on_foot(state.world, other.position, goal)
 
+    def open_to(goal: Point) -> bool:
+        return near(goal) and open_between(state.world, other.position, goal)
+
     if beside and (goal := _by_somebody(name, state, people, _SIDES, (_ABREAST,), near)) is not None:
         return Stop(*goal[:2], other.heading, goal[2])
-    goal = _by_somebody(name, state, people, _AHEAD, _FACE_TO_FACE, near)
-    if goal is not None:
-        return Stop(*goal[:2], _towards(goal, other.position), goal[2])
+    for will_do in (open_to, near):
+        goal = _by_somebody(name, state, people, _AHEAD, _FACE_TO_FACE, will_do)
+        if goal is not None:
+            return Stop(*goal[:2], _towards(goal, other.position), goal[2])
     return _before(name, state, people, None)
 
 
@@ -429,6 +434,14 @@ def near_on_foot(world: World, start: Point, goal: Point) -> bool:
     return bool(ways) and length(ways[0]) < 1.5 * math.dist(start[:2], goal[:2]) + 0.6
 
 
+def open_between(world: World, somebody: Point, place: Point) -> bool:
+    """Whether one can step straight up to somebody from a place, up to the seat they may be on."""
+    grid, away = grid_of(world, level_at(world, place)), math.dist(somebody[:2], place[:2])
+    steps = np.arange(min(_TO_A_SEAT / max(away, 1e-6), 1.0), 1.0, _STEP / max(away, _STEP))
+    way = np.array(somebody)[:2] + steps[:, None] * (np.array(place)[:2] - np.array(somebody)[:2])
+    return all(float(grid.clearance_at(np.array((*at, place[2])))) > 0.0 for at in way)
+
+
 def _before(name: str, state: SceneState, people: Discs, start: Place | None) -> Stop | None:
     """Face to face with somebody: in front of them with nothing between, else as near to that as there is
     room."""
@@ -440,7 +453,11 @@ def _before(name: str, state: SceneState, people: Discs, start: Place | None) ->
     def near(goal: Point) -> bool:
         return joined(goal) and near_on_foot(world, other.position, goal)
 
-    for will_do in (near, joined):  # not on the other side of a shelf that they look at, if there is a choice
+    def open_to(goal: Point) -> bool:
+        return near(goal) and open_between(world, other.position, goal)
+
+    # not behind a tree or on the other side of a shelf that they look at, if there is a choice
+    for will_do in (open_to, near, joined):
         goal = _by_somebody(name, state, people, _AHEAD, _FACE_TO_FACE, will_do)
         if goal is not None:
             return Stop(goal[0], goal[1], _towards(goal, other.position), goal[2])

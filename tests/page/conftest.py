@@ -59,7 +59,7 @@ def visit(browser: Any) -> Iterator[Callable[..., Any]]:
         context = browser.new_context(viewport={"width": width, "height": height}, **how)
         contexts.append(context)
         page = context.new_page()
-        page.set_default_timeout(30_000)
+        page.set_default_timeout(90_000)  # the library's pages are made when asked for, on a busy machine too
         page.on("pageerror", lambda error: wrong.append(str(error)))
         page.on("console", lambda said: wrong.append(said.text) if bad(said) else None)
         page.on("request", lambda asked: wrong.append(asked.url) if strange(asked.url, url) else None)

@@ -396,15 +396,8 @@ def with_somebody(name: str, who: str, state: SceneState, beside: bool) -> Stop 
     def near(goal: Point) -> bool:
         return near_on_foot(state.world, other.position, goal)
 
-    def open_to(goal: Point) -> bool:
-        return near(goal) and open_between(state.world, other.position, goal)
-
     if beside and (goal := _by_somebody(name, state, people, _SIDES, (_ABREAST,), near)) is not None:
         return Stop(*goal[:2], other.heading, goal[2])
-    for will_do in (open_to, near):
-        goal = _by_somebody(name, state, people, _AHEAD, _FACE_TO_FACE, will_do)
-        if goal is not None:
-            return Stop(*goal[:2], _towards(goal, other.position), goal[2])
     return _before(name, state, people, None)
 
 

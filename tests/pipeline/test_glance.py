@@ -1,6 +1,7 @@
 """Two looks at a shot's proposals: who gets a full one, and that nothing is kept without."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -15,11 +16,11 @@ from vdsl.pipeline import cache as cache_module
 from vdsl.pipeline import glance
 from vdsl.pipeline.compile import Result, Workshop, compile_file
 from vdsl.pipeline.filming import Camerawork, Seen
-from vdsl.pipeline.glance import Scored, Screening, second_looks
-from vdsl.pipeline.guides import about_of
+from vdsl.pipeline.glance import Looked, Scored, Screening, second_looks
 from vdsl.pipeline.judging import BY_GUIDES, BY_PICTURES, DiscriminatorJudge, GeometryJudge, Glance, Judge
 from vdsl.pipeline.options import Options
 from vdsl.pipeline.progress import Silence, StageClock
+from vdsl.pipeline.witness import MEASURE
 from vdsl.propose.types import CameraProposal
 
 SCRIPT = """\
@@ -79,8 +80,8 @@ def compiled(project: Path, shop: RoughShop, takes: int = 3, cache: bool = True)
     return compile_file(project / "story.vds", project / "build", Options(cache=cache), workshop=shop)
 
 
-def takes_of(result: Result) -> list[tuple[str, float]]:
-    return [(t.key, t.score) for t in result.build.shots[0].takes]
+def takes_of(result: Result) -> list[tuple[str, float, dict[str, float]]]:
+    return [(t.key, t.score, t.camera.measures) for t in result.build.shots[0].takes]
 
 
 @pytest.mark.parametrize("glances", [BY_PICTURES, BY_GUIDES])
@@ -110,6 +111,41 @@ def test_takes_are_as_if_all_had_had_a_full_look(
     assert {frames for _, frames in shop.rough.seen} == {8}
 
 
+def test_takes_are_measured_by_what_was_drawn(project: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Chosen by it, told of it, and the same where it was kept."""
+    drawn: list[int] = []
+
+    def half_hidden(*given: Sequence[CameraProposal]) -> list[CameraProposal]:
+        cameras = given[4]
+        drawn.append(len(cameras))
+        worse = {"legible": 0.2, "visibility": 0.25}
+        return [replace(c, measures=c.measures | worse) if c.index % 2 else c for c in cameras]
+
+    monkeypatch.setattr(glance, "as_drawn", half_hidden)
+    (shot,) = compiled(project, RoughShop(BY_GUIDES)).build.shots
+    assert sum(drawn) == shot.proposals + second_looks(shot.proposals, BY_GUIDES)
+    assert [take.camera.index % 2 for take in shot.takes] == [0] * len(shot.takes)
+    assert all(take.camera.measures[MEASURE] > 0.5 for take in shot.takes)
+    monkeypatch.setattr(glance, "as_drawn", lambda *given: pytest.fail("it is known what is seen"))
+    (again,) = compiled(project, RoughShop(BY_GUIDES)).build.shots
+    assert [t.camera.measures for t in again.takes] == [t.camera.measures for t in shot.takes]
+
+
+@pytest.mark.parametrize(
+    "line", ["/ (static wide eye-level) 0.5s", "(anna wave) / (static close-up eye-level) 0.5s, focus table"]
+)
+def test_places_and_things_are_measured_by_pictures_too(line: str) -> None:
+    text = SCRIPT.format(takes=1).rsplit("(anna", 1)[0] + line + "\n"
+    act, grid = proposed('storyboard "t"\n' + text)
+    judge, clock, camerawork = Rough(BY_GUIDES), StageClock(Silence()), Camerawork("cpu")
+    screening = Screening(act.staged, act.line.shots[0], act.filming, grid, camerawork, lambda: judge, clock)
+    scores, measures = screening.look(range(len(grid.cameras)))
+    assert len(scores) == len(measures) == len(grid.cameras) > 2
+    for camera, found in zip(grid.cameras, measures, strict=True):
+        assert found.keys() == camera.measures.keys()
+        assert abs(found["visibility"] - camera.measures["visibility"]) < 0.5
+
+
 def test_a_draft_is_one_until_the_judge_that_is_wanted_has_chosen(project: Path) -> None:
     """Also where another judge's choice is filmed already."""
     story, shop = project / "story.vds", RoughShop(BY_GUIDES)
@@ -132,10 +168,10 @@ def test_a_glance_by_guides_comes_near_a_full_look() -> None:
     """Of a shot's proposals the best by a full look are among those that a glance lets through."""
     act, grid = proposed('storyboard "t"\n' + SCRIPT.format(takes=3).replace("proposals 32", "proposals 60"))
     shot, camerawork = act.line.shots[0], Camerawork("cpu")
-    about, judge = about_of(shot, grid, act.filming, act.staged), DiscriminatorJudge(None, "cpu")
-    screening = Screening(act.staged, "board", grid, about, camerawork, lambda: judge, StageClock(Silence()))
-    full, count = screening.scores(range(len(grid.cameras))), len(grid.cameras)
-    first = screening.scores(range(count), judge.glances)
+    judge, clock = DiscriminatorJudge(None, "cpu"), StageClock(Silence())
+    screening = Screening(act.staged, shot, act.filming, grid, camerawork, lambda: judge, clock)
+    full, count = screening.look(range(len(grid.cameras))).scores, len(grid.cameras)
+    first = screening.look(range(count), judge.glances).scores
     assert first.shape == full.shape == (count,)
     through = np.argsort(-first)[: second_looks(count, judge.glances)]
     assert set(np.argsort(-full)[:3]) <= set(through.tolist())
@@ -148,11 +184,11 @@ def test_what_was_looked_at_goes_before_what_was_not() -> None:
     true = np.linspace(1.0, 0.0, 40)
     asked: list[list[int]] = []
 
-    def look(which: Sequence[int]) -> NDArray[np.float64]:
+    def look(which: Sequence[int]) -> Looked:
         asked.append(list(which))
-        return true[list(which)]
+        return Looked(true[list(which)], tuple({"visibility": float(i)} for i in which))
 
-    scored = Scored(lambda: true[::-1].copy(), look, {}, 16)  # the worst glance there can be
+    scored = Scored(lambda: true[::-1].copy(), look, best=16)  # the worst glance there can be
     scored.look_at_best()
     assert asked == [list(range(24, 40))]
     order = scored.order
@@ -163,6 +199,7 @@ def test_what_was_looked_at_goes_before_what_was_not() -> None:
     assert asked[1:] == [[3]]
     assert not scored.look((3, 30))
     assert scored.order.argmax() == 3
+    assert {i: m["visibility"] for i, m in scored.measures.items()} == {i: i for i in (3, *range(24, 40))}
 
 
 def test_the_discriminator_glances_by_guides_and_with_a_taste_by_pictures(tmp_path: Path) -> None:

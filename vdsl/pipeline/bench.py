@@ -168,10 +168,8 @@ def _chosen(
     def work() -> int:
         for act, grid in zip(acts, grids, strict=True):
             shot, clock = act.line.shots[0], StageClock(Silence())
-            about = about_of(shot, grid, act.filming, act.staged)
-            Scored.of(
-                Screening(act.staged, "board", grid, about, camerawork, lambda: judge, clock)
-            ).look_at_best()
+            screening = Screening(act.staged, shot, act.filming, grid, camerawork, lambda: judge, clock)
+            Scored.of(screening).look_at_best()
         return sum(len(grid.cameras) for grid in grids)
 
     return _rate(work)

@@ -23,7 +23,6 @@ from .captions import grid
 from .casting import TEST_EVERY, Scene, Troupe
 from .filming import Camerawork
 from .glance import Scored, Screening
-from .guides import about_of
 from .judging import DiscriminatorJudge
 from .progress import Silence, StageClock
 from .selection import unlike
@@ -93,10 +92,8 @@ def held_out_lines(
 
 def _scored(judge: DiscriminatorJudge, camerawork: Camerawork, scene: Scene, shown: ProposalGrid) -> Scored:
     """The scores of a line's proposals, as ``compile`` comes by them."""
-    shot = scene.shots[0]
-    about = about_of(shot, shown, scene.filming, scene.staged)
-    clock = StageClock(Silence())
-    scored = Scored.of(Screening(scene.staged, shot.style, shown, about, camerawork, lambda: judge, clock))
+    shot, clock = scene.shots[0], StageClock(Silence())
+    scored = Scored.of(Screening(scene.staged, shot, scene.filming, shown, camerawork, lambda: judge, clock))
     scored.look_at_best()
     return scored
 

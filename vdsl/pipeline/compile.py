@@ -40,7 +40,6 @@ from .edit import Edited, Reel, cut_findings, edited
 from .filming import Camerawork
 from .further import wishes, with_further, write_wishes
 from .glance import Screening
-from .guides import about_of
 from .judging import DiscriminatorJudge, GeometryJudge, Judge
 from .keys import code_digest, judge_digest
 from .letters import warn_of_letters
@@ -176,11 +175,10 @@ def prepare(path: Path, options: Options, workshop: Workshop) -> None:
                     camerawork.judge_ids(act.staged, shot.style, grid.story, (camera,), (96, 54))
                 achieved(camera, subject_of(shot, story, act.filming), act.filming.rig)
             if grid.cameras and options.rank != "geometry":
-                about = about_of(shot, grid, act.filming, act.staged)
                 judge = partial(workshop.judge, options, clock)
-                looks = Screening(act.staged, shot.style, grid, about, camerawork, judge, clock)
+                looks = Screening(act.staged, shot, act.filming, grid, camerawork, judge, clock)
                 for glance in (looks.judge().glances, None):
-                    looks.scores(range(len(grid.cameras)), glance)
+                    looks.look(range(len(grid.cameras)), glance)
         break
     workshop.judge(options, clock)
 

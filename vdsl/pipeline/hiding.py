@@ -189,7 +189,7 @@ def _scored(
     measures = {k: np.array([c.measures[k] for c in grid.cameras]) for k in grid.cameras[0].measures}
     alone = {k: [round(float(v), 4) for v in values] for k, values in parts(measures).items()}
     alone["geometry score"] = [round(geometry_score(c.measures), 4) for c in grid.cameras]
-    priors = [round(float(prior(c.measures)), 4) for c in grid.cameras]
+    priors = [round(float(prior(c.measures)), 4) for c in found]  # as they were drawn, as compile has them
     choices = picks(found, _CHOICES)
     if not choices:
         return None

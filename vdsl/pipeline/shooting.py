@@ -35,7 +35,6 @@ from .depends import digest, shot_text
 from .edit import CANDIDATES, Ends, candidates, ends_of
 from .filming import Camerawork
 from .glance import Scored, Screening
-from .guides import about_of
 from .judging import Judge
 from .keys import code_digest, judge_digest, options_digest
 from .options import Options
@@ -248,18 +247,19 @@ class Shooting:
     def _scores(self, grid: ProposalGrid, act: Act, line: StoryLine, shot: Shot) -> Scored:
         """The judge's scores of the proposals of a shot; of those not looked at before by a glance."""
         if not grid.cameras or self.run.options.rank == "geometry":
-            return Scored.full(self.run.judge().scores(grid.cameras, None) if grid.cameras else np.zeros(0))
+            some = self.run.judge().scores(grid.cameras, None) if grid.cameras else np.zeros(0)
+            return Scored.full(some, grid.cameras)
         run = self.run
-        about = about_of(shot, grid, act.filming, act.staged)
-        screening = Screening(act.staged, shot.style, grid, about, run.camerawork, run.judge, run.clock)
+        screening = Screening(act.staged, shot, act.filming, grid, run.camerawork, run.judge, run.clock)
         found = self._read(self._scores_key(line, shot), dict)
         if found is not None and len(found["first"]) == len(grid.cameras):
-            return Scored(lambda: found["first"], screening.scores, found["known"])
+            return Scored(lambda: found["first"], screening.look, found["known"], found["measures"])
         return Scored.of(screening)
 
     def _keep_scores(self, line: StoryLine, shot: Shot, scores: Scored) -> None:
         if self.run.options.rank != "geometry" and len(scores.first):
-            self._keep(self._scores_key(line, shot), {"first": scores.first, "known": scores.known})
+            known = {"first": scores.first, "known": scores.known, "measures": scores.measures}
+            self._keep(self._scores_key(line, shot), known)
 
     def _kept(
         self,
@@ -277,7 +277,8 @@ class Shooting:
         judge = self.run.judge
         out = {}
         for i, edge in zip(indices, ends, strict=True):
-            camera = grid.cameras[i]
+            camera = grid.cameras[i]  # it may have been vetted, which no picture of the judge's measures
+            camera = replace(camera, measures={**camera.measures, **scores.measures[i]})
             story, score = stories[camera.story], scores.known[i]
             out[i] = Kept(
                 keys[i],

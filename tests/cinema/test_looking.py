@@ -29,9 +29,15 @@ def pictures(what: int, near: float, rows: slice = slice(None), over: tuple[str,
     return Pictures(depth, kinds, PEOPLE, over)
 
 
-def measured(shown: Pictures | None, ground: World = FILMING.world) -> dict[str, float]:
-    subject = subject_of(shot(scale="medium"), two((0.0, 0.9)), FILMING)
-    takes = replace(takes_of("medium", "person", EYE, AIM), pictures=shown)
+def measured(
+    shown: Pictures | None,
+    ground: World = FILMING.world,
+    eye: tuple[float, float, float] = EYE,
+    aim: tuple[float, float, float] = AIM,
+    beside: tuple[float, float] = (0.0, 0.9),
+) -> dict[str, float]:
+    subject = subject_of(shot(scale="medium"), two(beside), FILMING)
+    takes = replace(takes_of("medium", "person", eye, aim), pictures=shown)
     return {k: float(v[0]) for k, v in measure(takes, subject, ground, 24.0).values.items()}
 
 
@@ -58,6 +64,28 @@ def test_a_branch_that_is_no_box_is_in_the_way() -> None:
     assert clear["foreground"] == 0.0
     assert hidden["foreground"] == 1.0
     assert measured(pictures(Pictures.THING, 1.0, slice(0, SIDE // 8)))["foreground"] == 0.0
+
+
+def test_the_ground_one_looks_down_on_is_not_in_the_way() -> None:
+    eye, aim = (3.5, 0.0, 0.8), (2.9, 0.0, 0.0)
+    lens = takes_of("medium", "person", eye, aim).track
+    ahead = np.subtract(aim, eye) / np.linalg.norm(np.subtract(aim, eye))
+    above = np.array((ahead[2], 0.0, -ahead[0]))
+    across = ((np.arange(SIDE) + 0.5) / SIDE - 0.5) * lens.sensor[1] / lens.focal[0, 0]
+    down = -(ahead[2] - across * above[2])  # of the rays of each row, for a metre along the axis
+    floor = pictures(Pictures.THING, 0.0)
+    floor.depth[:] = np.where(down > 0.0, eye[2] / np.maximum(down, 1e-6), np.inf)[:, None]
+    assert measured(floor, eye=eye, aim=aim)["foreground"] == 0.0
+    floor.depth[:] = np.minimum(floor.depth, 0.3)
+    assert measured(floor, eye=eye, aim=aim)["foreground"] > 0.5
+
+
+def test_one_who_is_quite_behind_another_is_not_apart_from_them() -> None:
+    eye, aim = (4.0, 0.0, 1.5), (0.0, 0.0, 1.5)
+    ben_alone = pictures(Pictures.FIRST + 1, 2.0)
+    found = measured(ben_alone, eye=eye, aim=aim, beside=(1.0, 0.02))
+    assert found["heads"] < 0.6
+    assert found["together"] > 0.8
 
 
 def test_a_head_behind_the_own_back_is_none_though_no_line_is_cut() -> None:

@@ -74,7 +74,9 @@ def legibility(
         headless = np.stack([behind_own_back(one, at, camera) for one in people], axis=-1)
         headless |= behind_bodies(crowd)[0]
     head = there[..., : len(_HEAD)]
-    upper = np.asarray(there[..., : len(_HEAD) + 1].any(axis=-1))
+    beside = np.asarray(there[..., : len(_HEAD) + 1].any(axis=-1))
+    if looks.by_pictures:  # which say nothing of one who is quite behind another
+        beside = _in_the_picture(takes, people, at, camera, axes, looks) & here
     hands = np.asarray(there[..., -len(_HANDS) :].any(axis=-1))
     asked = np.ones((len(camera), 1, len(people), len(_HEAD)))
     asked[:, 0, : len(own)] = np.array([_asked(size) for size in takes.sizes])[:, None]
@@ -90,7 +92,7 @@ def legibility(
         "legible": remembered(read.sum(axis=-1) / np.maximum(counts, 1), np.ones_like(takes.window)),
         "hands_shown": hands[:, middle, : len(about)].sum(axis=(1, 2)) / max(counts[middle].sum(), 1),
         "heads": (shown > _MOST_OF_IT).sum(axis=(1, 2)) / max(here.sum(), 1),
-        "together": lapped_heads(crowd, upper).min(axis=1),
+        "together": lapped_heads(crowd, beside).min(axis=1),
     }
 
 
@@ -112,6 +114,17 @@ def _marks(
     by_person = (len(at), len(people), len(_MARKS))
     seen = looks.shown(tuple(one.name for one in people), points.reshape(*by_person, 3), others)
     return np.asarray(there.reshape(len(there), *by_person) & seen)
+
+
+def _in_the_picture(
+    takes: Takes, people: tuple[Subject, ...], at: NDArray[np.int64], camera: Array, axes: Array, looks: Sight
+) -> Bools:
+    """Of whom a part from the crown to the pocket is in the frame and behind no thing, [P, F, K]."""
+    marks = (*_HEAD, "pocket")
+    points = np.stack([one.landmarks[name][at] for one in people for name in marks], axis=1)
+    xy, depth = project(points[None], camera, axes, takes.track.focal[:, at], takes.track.sensor)
+    there = within(xy, depth, 0.0) & looks.clear(points, people=False)
+    return np.asarray(there.reshape(*there.shape[:2], len(people), len(marks)).any(axis=-1))
 
 
 def _asked(size: Size) -> tuple[bool, ...]:

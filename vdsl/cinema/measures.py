@@ -87,6 +87,7 @@ ENDS_BEHIND = 0.4
 #: What is in the way within a share of the distance to the subject, and how much it counts; how many of the
 #: sampled frames are looked at.
 _NEAR, _LOOKED_AT = ((0.5, 1.0), (0.72, 0.4)), 6
+_TO_THE_GROUND = 0.9  # of the way to the floor, as far as something may be in the way of a look down
 #: Where in the frame, −1..1, it is looked whether something near is in the way: of a subject beside it, of a
 #: place all over the picture but for its lowest part, where the floor and what stands there may begin near.
 _ASIDE = np.array([(x, y) for x in (-0.85, -0.3, 0.3, 0.85) for y in (-0.6, 0.5)])
@@ -142,7 +143,7 @@ def measure(takes: Takes, subject: Subject, world: World, fps: float) -> Measure
     values |= legibility(takes, subject, at, camera, axes, looks)
     values["floor_gap"] = floor_gaps(takes, world, subject.floor, at, camera, axes, looks)
     across = _ALL_OVER if subject.kind == "place" else _ASIDE
-    values["foreground"] = _foreground(takes, at, camera, axes, picture, looks, across)
+    values["foreground"] = _foreground(takes, subject.floor, at, camera, axes, picture, looks, across)
     values |= _motion(track, takes.roll, fps)
     values["face"] = remembered(turned(subject, at, camera), takes.window)
     if len(subject.members) > 1:
@@ -214,6 +215,7 @@ def _interest(takes: Takes, shown: Bools) -> Array:
 
 def _foreground(
     takes: Takes,
+    floor: float,
     at: NDArray[np.int64],
     camera: Array,
     axes: Array,
@@ -236,9 +238,19 @@ def _foreground(
             + half * track.sensor[0] * across[:, :1] * ax[..., 0, :]
             + half * track.sensor[1] * across[:, 1:] * ax[..., 1, :]
         )
+        if looks.by_pictures:
+            points = _above(floor, camera[:, some, None], points)
         blocked = np.maximum(blocked, np.where(looks.clear(points, some=some), 0.0, counts))
     share = blocked.mean(axis=2)
     return np.asarray(np.maximum(share.mean(axis=1), ENDS_BEHIND * share[:, -1]))
+
+
+def _above(floor: float, eye: Array, points: Array) -> Array:
+    """Places [P, F, L, 3], those under the floor on the way there but a little above it: the ground that one
+    looks down on is in nobody's way, though pictures show it nearer than what would be below."""
+    high, down = np.maximum(eye[..., 2] - floor, 0.0), eye[..., 2] - points[..., 2]
+    share = np.where(down > high, _TO_THE_GROUND * high / np.maximum(down, 1e-9), 1.0)
+    return np.asarray(eye + share[..., None] * (points - eye))
 
 
 def _motion(track: CameraTrack, roll: float, fps: float) -> dict[str, Array]:

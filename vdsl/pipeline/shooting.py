@@ -277,7 +277,7 @@ class Shooting:
         judge = self.run.judge
         out = {}
         for i, edge in zip(indices, ends, strict=True):
-            camera = grid.cameras[i]  # it may have been vetted, which no picture of the judge's measures
+            camera = grid.cameras[i]  # with what vetting noted, which a full look does not measure
             camera = replace(camera, measures={**camera.measures, **scores.measures[i]})
             story, score = stories[camera.story], scores.known[i]
             out[i] = Kept(

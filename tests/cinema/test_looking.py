@@ -66,6 +66,13 @@ def test_a_branch_that_is_no_box_is_in_the_way() -> None:
     assert measured(pictures(Pictures.THING, 1.0, slice(0, SIDE // 8)))["foreground"] == 0.0
 
 
+def test_a_thing_is_in_the_way_wherever_it_is_in_a_picture() -> None:
+    """A basin a third of the way to her: eight looks across a picture go by it on either side."""
+    basin = pictures(Pictures.THING, np.inf)
+    basin.depth[..., SIDE // 2 - 12 : SIDE // 2 + 12, SIDE // 2 - 6 : SIDE // 2 + 6] = 1.0
+    assert measured(basin)["foreground"] == pytest.approx(24 * 12 / SIDE**2, abs=0.05)
+
+
 def test_the_ground_one_looks_down_on_is_not_in_the_way() -> None:
     eye, aim = (3.5, 0.0, 0.8), (2.9, 0.0, 0.0)
     lens = takes_of("medium", "person", eye, aim).track
@@ -103,6 +110,25 @@ def test_over_whose_shoulder_one_looks_is_not_in_the_way_but_hides_a_face() -> N
     assert found["visibility"] == 1.0
     assert found["legible"] == 0.0
     assert measured(pictures(ben, 1.0))["foreground"] == 1.0
+
+
+@pytest.mark.parametrize("away", [0.5, 0.18])
+def test_who_is_filmed_with_somebody_hides_them_as_far_as_pictures_show_it(away: float) -> None:
+    """Of two who hug it counts what is seen of either, however near they are to each other."""
+    told = two((-0.3, 0.5))
+    subject = subject_of(replace(shot(scale="medium"), view="two-shot", whose=("anna", "ben")), told, FILMING)
+    takes = takes_of("medium", "person", EYE, AIM)
+
+    def of(shown: Pictures) -> dict[str, float]:
+        found = measure(replace(takes, pictures=shown), subject, FILMING.world, 24.0).values
+        return {k: float(v[0]) for k, v in found.items()}
+
+    anna, ben = Pictures.FIRST, Pictures.FIRST + 1
+    apart = pictures(anna, 3.4)
+    apart.what[..., SIDE * 9 // 20 :], apart.depth[..., SIDE * 9 // 20 :] = ben, 3.7  # where he is
+    assert of(apart)["head_visible"] == 1.0
+    assert of(pictures(ben, 3.5 - away))["head_visible"] == 0.0
+    assert of(pictures(ben, 3.5 - away))["foreground"] == 0.0  # but nobody is in the way of the two
 
 
 def test_pictures_and_lines_agree_of_a_plain_thing_in_the_way() -> None:

@@ -21,10 +21,10 @@ from .takes import Bools, Pictures, Takes
 from .track import project
 
 #: Metres by which what is seen in a point's place has to be nearer to hide it: a thing that stands, as the
-#: chair one sits on; one that is moved, which may be in the hand; somebody else; the own body, whose surface
-#: is not where its joints are.
-_THING, _MOVED, _SOMEBODY, _OWN = 0.14, 0.5, 0.1, 0.3
-_FAR_OFF = 0.03  # of the way, the same of somebody else
+#: chair one sits on; one that is moved, which may be in the hand; somebody else, whom pictures tell from the
+#: one they are before, however near they are; the own body, whose surface is not where its joints are.
+_THING, _MOVED, _SOMEBODY, _OWN = 0.14, 0.5, 0.03, 0.3
+_FAR_OFF = 0.01  # of the way, the same of somebody else: a pixel there is as broad as that
 _NEAREST = 0.05  # metres before the camera from which on something is in its picture
 
 

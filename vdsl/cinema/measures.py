@@ -90,8 +90,10 @@ _NEAR, _LOOKED_AT = ((0.5, 1.0), (0.72, 0.4)), 6
 _TO_THE_GROUND = 0.9  # of the way to the floor, as far as something may be in the way of a look down
 #: Where in the frame, −1..1, it is looked whether something near is in the way: of a subject beside it, of a
 #: place all over the picture but for its lowest part, where the floor and what stands there may begin near.
+#: Pictures are looked at closely; a line past boxes is dear.
 _ASIDE = np.array([(x, y) for x in (-0.85, -0.3, 0.3, 0.85) for y in (-0.6, 0.5)])
 _ALL_OVER = np.array([(x, y) for x in np.linspace(-0.9, 0.9, 10) for y in (-0.5, 0.1, 0.6)])
+_CLOSELY = np.array([(x, y) for x in np.linspace(-0.9, 0.9, 10) for y in np.linspace(-0.75, 0.6, 6)])
 
 
 @dataclass(frozen=True, eq=False)
@@ -142,7 +144,7 @@ def measure(takes: Takes, subject: Subject, world: World, fps: float) -> Measure
     values["company_cut"] = company_cut(takes, subject, at, camera, axes, picture, looks)
     values |= legibility(takes, subject, at, camera, axes, looks)
     values["floor_gap"] = floor_gaps(takes, world, subject.floor, at, camera, axes, looks)
-    across = _ALL_OVER if subject.kind == "place" else _ASIDE
+    across = _ALL_OVER if subject.kind == "place" else _CLOSELY if looks.by_pictures else _ASIDE
     values["foreground"] = _foreground(takes, subject.floor, at, camera, axes, picture, looks, across)
     values |= _motion(track, takes.roll, fps)
     values["face"] = remembered(turned(subject, at, camera), takes.window)

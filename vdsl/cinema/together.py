@@ -100,13 +100,7 @@ def everybody_measured(
         points = np.stack([one.landmarks[n][at] for n in SIGHT], axis=1)
         sight = [picture.names.index(n) for n in SIGHT]
         inside = within(picture.xy[:, :, sight], picture.depth[:, :, sight], 0.0)
-        bodies = [
-            (foot[at], crown[at], radius)
-            for other in subject.members
-            if other is not one
-            for foot, crown, radius in pillars(other)
-        ]
-        seen = looks.clear(points) & clear_of_people(camera, points, bodies)
+        seen = _seen_among(subject.members, one, points, at, camera, looks)
         found.append(visibility(takes, inside, seen) | {"head_cropped": broken(takes, one, picture)})
         shown = (inside & seen)[:, :, [SIGHT.index(name) for name in ("hand_l", "hand_r")]]
         found[-1]["act_missed"] = act_missed(one, at, inside & seen)
@@ -117,6 +111,27 @@ def everybody_measured(
     out |= {name: found[0][name] for name in ("act_missed", "hands_missed", "gesture_lost")}  # of who acts
     out["face_covered"] = face_covered(takes, subject.members[0], at, camera)
     return out | {"face": _faces(takes, subject, at, camera)}
+
+
+def _seen_among(
+    members: tuple[Subject, ...],
+    one: Subject,
+    points: Array,
+    at: NDArray[np.int64],
+    camera: Array,
+    looks: Sight,
+) -> Bools:
+    """Which of somebody's points [F, K, 3] nothing hides, nor anybody, those they are filmed with among them,
+    [P, F, K]."""
+    if looks.by_pictures:
+        return np.asarray(looks.shown((one.name,), points[:, None], people=True)[:, :, 0])
+    bodies = [
+        (foot[at], crown[at], radius)
+        for other in members
+        if other is not one
+        for foot, crown, radius in pillars(other)
+    ]
+    return np.asarray(looks.clear(points) & clear_of_people(camera, points, bodies))
 
 
 def turned_among(one: Subject, at: NDArray[np.int64], camera: Array) -> Array:

@@ -176,3 +176,20 @@ def test_nobody_is_brought_in_by_what_somebody_else_does() -> None:
     for line in ("(Ben stands up and the waiter leaves.)", "(Ben sits down, and the doctor comes in.)"):
         _, report = read(line)
         assert "VDS065" in [d.code for d in report.errors], line
+
+
+@pytest.mark.parametrize(
+    ("line", "help"),
+    [
+        ("(anna at fridge)", "`anna at fridge` without parentheses says where somebody is from the start"),
+        (
+            "(clara walks to the fridge)",
+            "characters are anna and ben; a line `character clara = woman`, or `man`, makes one more",
+        ),
+        ("(anan walks to the fridge)", "characters are anna and ben"),
+        ("(sideways walks to the fridge)", "characters are anna and ben"),
+    ],
+)
+def test_what_is_wrong_says_how_it_is_said(line: str, help: str) -> None:
+    _, report = read(line, "apartment.kitchen")
+    assert help in [d.help for d in report.errors]

@@ -201,6 +201,9 @@ def test_words_choose_among_the_ways_to_do_it() -> None:
         ("(anna serve ben drink)", [[("anna", "serve", "drink")]]),
         ("(anna and ben's hands tremble)", [[("anna", "tremble", ""), ("ben", "tremble", "")]]),
         ("(slowly anna opens the door)", [[("anna", "open", "door")]]),
+        ("(slowly and quietly anna opens the door)", [[("anna", "open", "door")]]),
+        ("(slowly, quietly, anna opens the door)", [[("anna", "open", "door")]]),
+        ("(very slowly but surely, anna opens the door)", [[("anna", "open", "door")]]),
         ("(on the sofa, ben sleeps)", [[("ben", "sleep", "sofa")]]),
         (
             "(both sit down, then leave)",

@@ -326,11 +326,15 @@ class BeatReader:
             meant = nearest(f"{word}-{words.fold(rest[1].text)}", self.actions)
         if meant is None:  # walking, walked
             meant = next((a for a in self.actions if len(a) > 2 and word.startswith(a)), None)
+        help = self._actions_in_words()
+        if word in words.PREPOSITIONS and len(rest) > 1:  # `anna at table`
+            meant, where = None, " ".join(each.span.text for each in node.words)
+            help = f"`{where}` without parentheses says where somebody is from the start"
         self.report.error(
             "VDS071",
             rest[0].span,
             label=f"no action is called `{rest[0].text}`",
-            help=self._actions_in_words(),
+            help=help,
             suggestion=meant,
             fix=meant,
         )

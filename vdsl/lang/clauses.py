@@ -43,6 +43,8 @@ _PERCEIVES = {
     "point",
 }
 _JOIN = ("and", "then", "but")
+#: How much what follows is so.
+_STRONGER = ("very", "quite", "rather", "so", "really", "ever")
 COMMA = ","
 _MOST_ACTION_WORDS = 3
 
@@ -221,15 +223,15 @@ def _begun(said: Words, known: Known) -> Sentence | None:
     """``while ben cooks, anna reads``; None for what begins with who acts."""
     if not said or subject(said, known) or said[0].text == COMMA:
         return None
-    first, rest = said[0], said[1:]
+    first = said[0]
     comma = next((k for k, word in enumerate(said) if word.text == COMMA), len(said))
     clause, main = said[1:comma], said[comma + 1 :]
-    alone = rest[1:] if rest[:1] != () and rest[0].text == COMMA else rest
-    if says_how(first) or fold(first.text) in MANNERS:
+    hows, alone = _how_first(said, known)
+    if hows:
         who = subject(alone, known)
         if not who:
             return one_sentence(alone, known) if thing(alone, known, True) is not None else None
-        how = (first,) if fold(first.text) in MANNERS else ()
+        how = tuple(word for word in hows if fold(word.text) in MANNERS)[:1]
         return one_sentence((*alone[:who], *how, *alone[who:]), known)  # `suddenly carl jumps up`
     of_thing = thing(said[:comma], known, True) is not None
     if of_thing and main and (subject(main, known) or thing(main, known, True) is not None):
@@ -262,6 +264,22 @@ def _begun(said: Words, known: Known) -> Sentence | None:
     ):  # `awkward silence, they look away`
         return replace(of_main, left_out=(said[:comma], *of_main.left_out))
     return None
+
+
+def _how_first(said: Words, known: Known) -> tuple[Words, Words]:
+    """The words for how it is done that stand before who does it, ``very slowly and quietly``, and what
+    follows; with a thing that is called so nothing is said of how."""
+    hows: list[ast.Name] = []
+    after = 0
+    for k, word in enumerate(said):
+        if (says_how(word) or fold(word.text) in MANNERS) and word.text not in known.named:
+            hows.append(word)
+            after = k + 1
+        elif word.text not in _STRONGER and not (hows and word.text in (*_JOIN, COMMA)):
+            break
+    if hows and said[after : after + 1] != () and said[after].text == COMMA:
+        after += 1
+    return tuple(hows), said[after:]
 
 
 def _is_slip(said: Words, known: Known) -> bool:

@@ -399,8 +399,9 @@ def unknown_character(word: ast.Name, characters: tuple[str, ...], report: Repor
     if characters:
         known = f"characters are {listing(characters, last='and')}"
         help = known
-        if pronouns.is_person(word.text) or word.span.text.istitle():
-            help = f"{known}; a line `character {word.text} = man` makes one more"
+        small = phrases.is_small(word.text) or phrases.says_how(word)
+        if pronouns.is_person(word.text) or word.span.text.istitle() or not (meant or small):
+            help = f"{known}; a line `character {word.text} = woman`, or `man`, makes one more"
         if word.text in phrases.PRONOUNS:
             help = f"say who by name, of {listing(characters, last='and')}"
     else:

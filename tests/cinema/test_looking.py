@@ -73,6 +73,12 @@ def test_a_thing_is_in_the_way_wherever_it_is_in_a_picture() -> None:
     assert measured(basin)["foreground"] == pytest.approx(24 * 12 / SIDE**2, abs=0.05)
 
 
+def test_no_picture_is_left_out_in_which_something_is_in_the_way() -> None:
+    passing = pictures(Pictures.THING, np.inf)
+    passing.depth[:, [2, 5]] = 1.0
+    assert measured(passing)["foreground"] == pytest.approx(2 / len(samples(FRAMES)))
+
+
 def test_the_ground_one_looks_down_on_is_not_in_the_way() -> None:
     eye, aim = (3.5, 0.0, 0.8), (2.9, 0.0, 0.0)
     lens = takes_of("medium", "person", eye, aim).track

@@ -46,7 +46,7 @@ WORSE = {
     "legible": 0.7, "heads": 0.5, "together": 0.4, "hands_shown": 0.5, "visibility": 0.9, "face_covered": 0.2,
     "foreground": 0.04, "backdrop_gap": 0.08, "company_cut": 0.4, "floor_gap": 0.3, "empty": 0.2,
     "in_frame": 0.96, "headroom_error": 0.1, "lead_room": -0.2, "thirds_error": 0.15, "clearance": 0.35,
-    "jerk": 6.0,
+    "jerk": 6.0, "size_error": 0.06,
 }  # fmt: skip
 
 

@@ -85,7 +85,7 @@ ENDS_EMPTY = 0.3
 #: How much what is in the way in the last frame counts, were there nothing in all others.
 ENDS_BEHIND = 0.4
 #: What is in the way within a share of the distance to the subject, and how much it counts; how many of the
-#: sampled frames are looked at.
+#: sampled frames are looked at along lines; of pictures all are.
 _NEAR, _LOOKED_AT = ((0.5, 1.0), (0.72, 0.4)), 6
 _TO_THE_GROUND = 0.9  # of the way to the floor, as far as something may be in the way of a look down
 #: Where in the frame, −1..1, it is looked whether something near is in the way: of a subject beside it, of a
@@ -225,9 +225,10 @@ def _foreground(
     looks: Sight,
     across: Array,
 ) -> Array:
-    """Looks [L, 2] across the frame on some of the sampled frames: whether something is in the way half way
-    to the subject and, for less, on the last of the way to it."""
-    some = np.unique((np.arange(_LOOKED_AT) * ((len(at) - 1) / (_LOOKED_AT - 1))).round().astype(int))
+    """Looks [L, 2] across the frame on some of the sampled frames, of pictures on all: whether something is
+    in the way half way to the subject and, for less, on the last of the way to it."""
+    count = len(at) if looks.by_pictures else _LOOKED_AT
+    some = np.unique((np.arange(count) * ((len(at) - 1) / max(count - 1, 1))).round().astype(int))
     track = takes.track
     far = np.maximum(picture.depth[:, some, picture.names.index("pocket")], 0.2)
     ax, blocked = axes[:, some, None], np.zeros((len(camera), len(some), len(across)))

@@ -38,9 +38,16 @@ COUNTS = {
 SEEN = {"legible": 0.4, "heads": 0.22, "apart": 0.16, "hands": 0.12, "visibility": 0.1}
 _COVERED = 0.45  # of it, what a face that is covered takes away
 #: What of the framing is that the subject is in it all the time; and what each of these takes away where it
-#: is 1.
+#: is 1. A size that is off, as where a room is too small for it, reads as one between two.
 _IN_FRAME = 0.3
-SPOILS = {"foreground": 0.95, "backdrop_gap": 0.6, "company_cut": 0.33, "floor_gap": 0.3, "empty": 0.15}
+SPOILS = {
+    "size_error": 1.5,
+    "foreground": 0.95,
+    "backdrop_gap": 0.6,
+    "company_cut": 0.33,
+    "floor_gap": 0.3,
+    "empty": 0.15,
+}
 _LITTLE = 0.02  # the worst a criterion is taken for
 
 
@@ -51,7 +58,7 @@ def qualities(measures: Measures) -> dict[str, Array]:
     seen = np.asarray(sum(share * found[name] for name, share in SEEN.items()))
     framing = 1.0 - _IN_FRAME + _IN_FRAME * m["in_frame"]
     for name, share in SPOILS.items():
-        framing = framing * (1.0 - share * m[name])
+        framing = framing * np.maximum(1.0 - share * m[name], 0.0)
     return {
         "visibility": seen * (1.0 - _COVERED * m["face_covered"]),
         "framing": framing,

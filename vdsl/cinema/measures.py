@@ -227,8 +227,9 @@ def _foreground(
 ) -> Array:
     """Looks [L, 2] across the frame on some of the sampled frames, of pictures on all: whether something is
     in the way half way to the subject and, for less, on the last of the way to it."""
-    count = len(at) if looks.by_pictures else _LOOKED_AT
-    some = np.unique((np.arange(count) * ((len(at) - 1) / max(count - 1, 1))).round().astype(int))
+    some = np.arange(len(at))
+    if not looks.by_pictures:
+        some = np.unique((np.arange(_LOOKED_AT) * ((len(at) - 1) / (_LOOKED_AT - 1))).round().astype(int))
     track = takes.track
     far = np.maximum(picture.depth[:, some, picture.names.index("pocket")], 0.2)
     ax, blocked = axes[:, some, None], np.zeros((len(camera), len(some), len(across)))

@@ -267,8 +267,8 @@ def _begun(said: Words, known: Known) -> Sentence | None:
 
 
 def _how_first(said: Words, known: Known) -> tuple[Words, Words]:
-    """The words for how it is done that stand before who does it, ``very slowly and quietly``, and what
-    follows; with a thing that is called so nothing is said of how."""
+    """The words for how it is done that stand before who does it, ``very slowly and quietly`` without what
+    joins and strengthens them, and what follows; () and all of them where there are none."""
     hows: list[ast.Name] = []
     after = 0
     for k, word in enumerate(said):

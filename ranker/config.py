@@ -6,7 +6,7 @@ first, few epochs, fewer frames of a clip.
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 from typing import Any
 
 from .errors import RankerError
@@ -102,6 +102,8 @@ class TrainConfig:
         as at a glance
     graded: how much less than 1 the label of a good clip is that is only just good enough, where clips say
         how good they are
+    heads: how many times the clips are gone through, at last, by the heads alone, while what describes a shot
+        stays as it is (:mod:`ranker.heads`): of use for weights that were taught by other clips
     anchored: what the weights keep, in the end, of those they began with: both are averaged in that share
         (Wortsman et al. 2022, "Robust fine-tuning"), so that what was learnt before is not lost
     smoothing: label smoothing; held_out: share of the clips, by whole groups, kept for evaluation
@@ -133,6 +135,7 @@ class TrainConfig:
     unguided: float = 0.3
     glanced: float = 0.25
     graded: float = 0.3
+    heads: int = 0
     anchored: float = 0.0
     held_out: float = 0.15
     calibration: int = 40
@@ -164,7 +167,9 @@ CPU = TrainConfig(
     unguided=0.5,
     smoothing=0.02,
 )
-RECIPES = {"paper": PAPER, "cpu": CPU}
+#: For weights that were taught by other clips: only what is told and judged is taught by these.
+HEADS = replace(CPU, phases=(), heads=8)
+RECIPES = {"paper": PAPER, "cpu": CPU, "heads": HEADS}
 #: The trainings of the ablation by the names of their folders: whether L_c and L_q count.
 ABLATION = {"b": (False, False), "b+c": (True, False), "b+q": (False, True), "b+c+q": (True, True)}
 

@@ -1,5 +1,5 @@
 """How people in a picture stand to each other, and what spoils it: who stands before whom, who has no head in
-it or is halved by its border, what is near in the way, and what is missing behind.
+it or is halved by its border, and what is in the way or missing (:mod:`ranker.foreground`).
 
 An eye that puts good takes in order goes by these as much as by the face it looks for, and none of them is a
 sum of marks: of two people it counts which one is nearer, and how far they are apart for how large they are.
@@ -9,15 +9,15 @@ the size of 1 that are known for any of them.
 
 from __future__ import annotations
 
-import math
 from typing import NamedTuple
 
 import torch
 from torch import Tensor
 
-from .composed import away_of, hidden
+from .composed import hidden
+from .foreground import foreground_of, missing_of
 from .framed import SENSOR
-from .guides import CHANNELS, FARTHEST, MARKS, PEOPLE, SIDE
+from .guides import FARTHEST, MARKS, PEOPLE
 
 #: Half the breadth of a head and its hair, of a trunk, and of one with its arms and some air beside it:
 #: metres.
@@ -32,30 +32,29 @@ _HEADS, _FROM_ABOVE = 3.0, 0.2
 #: hardly any more.
 _BEFORE, _NEARER_HEAD = 0.2, 0.1
 _BEHIND, _GONE, _FAR = 0.5, 0.85, 6.0
+#: Cosine of a face to the camera below which one sees the back of a head, of which nothing is left where it
+#: is cut above the brow; and above which nobody's shoulder is looked over.
+_FACELESS, _SHOULDER = -0.2, 0.3
 _OUT = 2.95  # half frames off the middle at which what is behind the camera is told of
 #: What the last frame adds to somebody without a head; what they count who are halved, who stand before each
 #: other, and whose feet are not in the picture; and how much all of it takes away.
 _ENDS, _HALF, _CROWDED, _FOOTLESS = 0.3, 0.5, 0.45, 0.3
 _SPOILT, _COVERED = 0.33, 0.95
-#: What the last frame counts of what is in the way, and of what is missing, were there nothing in all others.
-_ENDS_BEHIND, _ENDS_MISSING = 0.4, 0.5
 #: Points of somebody, by their places in what follows.
 _POINTS = ("crown", "eyes", "pocket", "waist", "feet")
 _CROWN, _EYES, _CHEST, _WAIST, _FEET = range(len(_POINTS))
-#: Where it is looked, half frames to the right and down, for what is near in the way of a subject and of a
-#: place, and for what is missing of the floor; how much nearer (log) than the subject, and what that counts.
-_ASIDE = [(x, y) for x in (-0.85, -0.3, 0.3, 0.85) for y in (-0.6, 0.5)]
-_ALL_OVER = [(-0.891 + 0.198 * k, y) for k in range(10) for y in (-0.5, 0.1, 0.6)]
-_LOWER = [(x, y) for x in (-0.8, -0.3, 0.3, 0.8) for y in (0.3, 0.65, 0.95)]
-_IN_THE_WAY = ((math.log(2.0), 1.0), (-math.log(0.72), 0.4))
+#: Where film grammar draws its lines, and on both sides of them, for how much is in the way and for how much
+#: is spoilt; and within how much of each a shot may be told to be on one side of it.
+_WAY = ((0.02, 0.015), (0.05, 0.015), (0.1, 0.05))
+_CUT = ((0.35, 0.1), (0.5, 0.05), (0.7, 0.1))
 _FINE = 5.0  # a fifth of what there may be is much
-_NOTHING = -9.0  # by how much nearer what is not there is
+_FACE = 0.05  # length of the direction of a face that is none: a place has no face
 #: Numbers of a frame and of a shot.
 _FRAME = 12
-CROWDED = 2 * _FRAME + 12
+CROWDED = 2 * _FRAME + 18 + 4 * (len(_WAY) + len(_CUT))
 #: Places of some of them: of a frame's, which come on the average and then of the last; and of a shot's.
 TOGETHER, LOST, HALVED, FOOTLESS, READ = 0, 2, 3, 4, 5
-LEAST_TOGETHER, SPOILT, IN_THE_WAY, MISSING = (2 * _FRAME + k for k in (0, 1, 6, 10))
+LEAST_TOGETHER, SPOILT, IN_THE_WAY, MISSING, BESIDES, ASKED = (2 * _FRAME + k for k in (0, 1, 6, 10, 12, 14))
 
 
 class _People(NamedTuple):
@@ -64,7 +63,8 @@ class _People(NamedTuple):
     own: whether the shot is about them; there: whether there is such a one before the camera
     right, up: half frames from the middle; aside, down: metres at a metre's distance; depth: metres
     inside: points that are in the frame; clear: and nothing is before them
-    breadth: half frames of a metre where they are
+    breadth: half frames of a metre where they are; turned: cosine of the face to the camera
+    place: [B, T, 1], whether the shot is about a place, and they are those in it
     """
 
     own: Tensor
@@ -77,6 +77,8 @@ class _People(NamedTuple):
     inside: Tensor
     clear: Tensor
     breadth: Tensor
+    turned: Tensor
+    place: Tensor
 
     @property
     def scale(self) -> Tensor:
@@ -110,24 +112,53 @@ def crowd_of(told: Tensor, maps: Tensor) -> Tensor:
 
     told: marks of their frames [B, T, marks]; maps: their maps [B, T, SIDE, SIDE, channels]
     """
-    frames, people = _frames(told)
-    near, missing = _in_the_way(told, maps), _missing(told, maps)
+    who = _people(told)
+    frames, people = _frames(who)
     mean, last, least = frames.mean(1), frames[:, -1], frames.amin(1)
-    together, crowded, lost, halved, footless = (slice(k, k + 1) for k in range(5))
+    spoilt, besides = _spoilt(frames, people), _spoilt(*_frames(_without_shoulders(who)))
+    near, missing = foreground_of(told, maps), missing_of(told, maps)
+    logs = [(1 - _SPOILT * part).log() for part in spoilt]
+    logs.append((1 - _COVERED * near.way[:, :1]).clamp_min(0.05).log())
+    of_place = who.place.any(1)
+    asked = [torch.where(of_place, found[:, 1:], found[:, :1]) for found in near]
+    numbers = [mean, last, least[:, :1], *spoilt, *logs, near.way, near.at_end, missing, *besides, *asked]
+    sides = [*_sides(asked[0], _WAY), *_sides(asked[2], _WAY)]
+    sides += [*_sides(spoilt[0], _CUT), *_sides(besides[0], _CUT)]
+    beyond = torch.cat(sides, 1)
+    return torch.cat([torch.asinh(_FINE * torch.cat(numbers, 1)), beyond, beyond * of_place], 1)
+
+
+def _sides(values: Tensor, bounds: tuple[tuple[float, float], ...]) -> list[Tensor]:
+    """On which side of bounds values [B, 1] are, -1..1."""
+    return [torch.tanh((values - bound) / within) for bound, within in bounds]
+
+
+def _spoilt(frames: Tensor, people: Tensor) -> tuple[Tensor, Tensor]:
+    """How much numbers of frames [B, T, _FRAME] spoil shots of so many people [B], by all but feet and by
+    these too: [B, 1] each."""
+    mean, last = frames.mean(1), frames[:, -1]
+    crowded, lost, halved, footless = (slice(k, k + 1) for k in range(1, 5))
     cut = mean[:, lost] + _ENDS * last[:, lost]
     ugly = _HALF * (mean[:, halved] + _ENDS * last[:, halved]).clamp_max(1)
     ugly = torch.maximum(ugly, _CROWDED * torch.maximum(mean[:, crowded], last[:, crowded]))
     feet = _FOOTLESS * torch.maximum(mean[:, footless], last[:, footless])
     several = (people > 1).float().unsqueeze(1)
     spoilt = torch.maximum(cut, ugly).clamp(0, 1) * several
-    with_feet = torch.maximum(spoilt, feet.clamp(0, 1) * several)
-    logs = [(1 - _SPOILT * spoilt).log(), (1 - _SPOILT * with_feet).log()]
-    logs.append((1 - _COVERED * near[:, :1]).clamp_min(0.05).log())
-    numbers = torch.cat([mean, last, least[:, together], spoilt, with_feet, *logs, near, missing], 1)
-    return torch.asinh(_FINE * numbers)
+    return spoilt, torch.maximum(spoilt, feet.clamp(0, 1) * several)
 
 
-def _frames(told: Tensor) -> tuple[Tensor, Tensor]:
+def _without_shoulders(who: _People) -> _People:
+    """Everybody but one over whose shoulder the subject may be meant to be seen: the first of the others,
+    if most of the time nearer than it and not facing the camera. Who is there by intent spoils nothing."""
+    first = torch.zeros_like(who.there)
+    first[..., 1] = True  # the subject, alone, is before all others
+    over = first & who.own[..., :1] & ~who.own & (who.depth < who.depth[..., :1]) & (who.turned < _SHOULDER)
+    there = who.there & (over.float().mean(1, keepdim=True) <= 0.5)
+    seen = there.unsqueeze(-1)
+    return who._replace(there=there, inside=who.inside & seen, clear=who.clear & seen)
+
+
+def _frames(who: _People) -> tuple[Tensor, Tensor]:
     """Numbers of frames [B, T, _FRAME], and how many people they are of at most [B].
 
     How near two heads are to each other, and how little people stand apart; how much somebody beside the
@@ -135,7 +166,6 @@ def _frames(told: Tensor) -> tuple[Tensor, Tensor]:
     by who stands before them and by what is drawn, and the first of those it is about; how much of the trunk
     of one of these is behind somebody, and whether any is; the most that is of anybody's; how many there are.
     """
-    who = _people(told)
     covered, share = _covered(who)
     head = who.clear[..., _EYES] & (who.inside[..., _CROWN] | _inside(who, _chin(who))) & who.there
     own, count = who.own & who.there, who.there.sum(-1)
@@ -201,6 +231,7 @@ def _company(who: _People, covered: _Covered) -> tuple[Tensor, Tensor, Tensor, T
     hides = who.inside.any(-1) & ~who.clear.any(-1) & ~covered.any  # a thing does
     body = (beside & high)[..., _CHEST : _WAIST + 1].any(-1) & who.there & ~hides
     whole = (right[..., _EYES].abs() < 1 + head) & high[..., _EYES] & (_chin(who).abs() < 1)
+    whole = whole & (high[..., _CROWN] | (who.turned > _FACELESS))
     seen = who.clear[..., _CROWN : _EYES + 1].any(-1) | ~who.inside[..., _EYES]
     whole = whole & ~covered.headless & seen
 
@@ -208,7 +239,7 @@ def _company(who: _People, covered: _Covered) -> tuple[Tensor, Tensor, Tensor, T
     subject = nearest.where(nearest.isfinite(), who.depth).clamp_min(_BEFORE)
     counts = ((_FAR - who.depth / subject) / (_FAR - 1)).clamp(0, 1)
     left = covered.behind < _GONE
-    company = body & left & ~who.own
+    company = body & left & (~who.own | who.place)
     lost = (company & ~whole) * counts
     x = right[..., _CHEST]
     within = (((x + trunk).clamp_max(1) - (x - trunk).clamp_min(-1)) / (2 * trunk)).clamp(0, 1)
@@ -232,6 +263,7 @@ def _people(told: Tensor) -> _People:
     numbers = [k + 1 for k in range(PEOPLE)]
     about = torch.stack([marks[f"about_{k}"].nan_to_num(0.0) for k in numbers], -1) > 0.5
     face = torch.stack([marks[f"{way}_face"].nan_to_num(0.0) for way in ("right", "up", "away")], -1)
+    place = about.any(-1, keepdim=True) & (face.norm(dim=-1, keepdim=True) < _FACE)
     alone = (~about.any(-1) & (face.norm(dim=-1) > 0.5)).unsqueeze(-1)  # things have no face
     suffixes = ("", *(f"_{k}" for k in numbers))
     right, up, nearer = (
@@ -251,9 +283,10 @@ def _people(told: Tensor) -> _People:
     inside = (right.abs() < 1) & (up.abs() < 1) & there.unsqueeze(-1)
     clear = inside & (hidden(nearer, depth.log().unsqueeze(-1)) < 0.5)
     breadth = lens / SENSOR[0] / depth.clamp_min(_BEFORE)
-    return _People(
-        torch.cat([alone, about], -1), there, right, up, aside, down, depth, inside, clear, breadth
-    )
+    turned = torch.stack([marks[f"turned_{k}"].nan_to_num(0.0) for k in numbers], -1)
+    turned = torch.cat([-marks["away_face"].nan_to_num(0.0).unsqueeze(-1), turned], -1)
+    own = torch.cat([alone, about], -1)
+    return _People(own, there, right, up, aside, down, depth, inside, clear, breadth, turned, place)
 
 
 def _chin(who: _People) -> Tensor:
@@ -279,38 +312,3 @@ def _of(values: Tensor) -> Tensor:
 def _by(values: Tensor) -> Tensor:
     """By those."""
     return values.unsqueeze(-2)
-
-
-def _in_the_way(told: Tensor, maps: Tensor) -> Tensor:
-    """How much of the picture something near covers, [B, 4]: beside a subject, and all over a place; then
-    what there is of both at the end."""
-    code = maps[..., CHANNELS.index("nearness")]
-    distance = told[..., MARKS.index("distance")].nan_to_num(1.0)
-    by = torch.where(code > 0, distance[..., None, None] - away_of(code), _NOTHING)
-    own = maps[..., CHANNELS.index("subject")].float() / 255
-    way = torch.stack([(by > least) * counts for least, counts in _IN_THE_WAY], -1).amax(-1) * (1 - own)
-    found = torch.stack([_at(way, looks).mean(-1) for looks in (_ASIDE, _ALL_OVER)], -1)
-    last = found[:, -1]
-    return torch.cat([torch.maximum(found.mean(1), _ENDS_BEHIND * last), last], 1)
-
-
-def _missing(told: Tensor, maps: Tensor) -> Tensor:
-    """How much of the picture shows nothing at all, [B, 2]: of its lower part, and beside the subject where
-    walls are left out."""
-    nothing = maps[..., CHANNELS.index("nothing")].float() / 255
-    lower = _at(nothing, _LOWER).mean(-1)
-    floor = torch.maximum(lower[:, [0, lower.shape[1] // 2, -1]].mean(1), _ENDS_MISSING * lower[:, -1])
-    waist = told[..., MARKS.index("up_waist")].nan_to_num(0.0).clamp(-1, 1)
-    row = ((1 - waist) / 2 * SIDE).long().clamp(0, SIDE - 1)
-    across = nothing.gather(2, row[..., None, None].expand(-1, -1, 1, SIDE)).mean((2, 3))
-    opened = told[..., MARKS.index("open")].nan_to_num(0.0)
-    return torch.stack([floor, (across * opened).mean(1)], -1)
-
-
-def _at(field: Tensor, looks: list[tuple[float, float]]) -> Tensor:
-    """What fields [B, T, SIDE, SIDE] hold at places, [B, T, looks]."""
-    column, row = (
-        torch.tensor([min(int((look[k] + 1) * SIDE / 2), SIDE - 1) for look in looks], device=field.device)
-        for k in (0, 1)
-    )
-    return field[:, :, row, column]

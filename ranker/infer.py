@@ -90,7 +90,8 @@ class Ranker:
         """The weights in the folder ``path``, or the shipped ones; raises :class:`RankerError`."""
         model, card = load_model(path)
         phases = card.training.get("phases") or ()
-        alone = any(dict(phase).get("size") == 0 for phase in phases)
+        heads = bool(card.training.get("heads"))  # which are taught by guides alone
+        alone = heads or any(dict(phase).get("size") == 0 for phase in phases)
         return cls(model, device, load_ranges(path, model, card), alone)
 
     def fits(self, frames: int, size: int | None = None) -> None:

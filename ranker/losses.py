@@ -95,6 +95,19 @@ def fault_loss(told: Tensor, known: Tensor) -> Tensor:
     return functional.binary_cross_entropy_with_logits(told[sure], known[sure])
 
 
+def measures_loss(
+    told: Tensor, hints: Tensor, faults: slice, goods: slice, fault_weight: float, good_weight: float
+) -> Tensor:
+    """The part of L_h that is of whole shots, told and hints [B, K] both: faults by whether there are such,
+    weighed by ``fault_weight``; all else by how far off it is, and how good a shot is by each criterion once
+    more, weighed by ``good_weight``."""
+    plain = torch.ones(told.shape[1], dtype=torch.bool, device=told.device)
+    plain[faults] = False
+    loss = hint_loss(told[:, plain], hints[:, plain])
+    loss = loss + good_weight * hint_loss(told[:, goods], hints[:, goods])
+    return loss + fault_weight * fault_loss(told[:, faults], hints[:, faults])
+
+
 def _apart(told: Tensor, known: Tensor) -> Tensor:
     """Smooth L1, straight from ``_STRAIGHT`` on, the mean over what is not NaN."""
     sure = known.isfinite()

@@ -113,8 +113,9 @@ class ShotRanker(nn.Module):
         #: Numbers that describe a frame: [N, described] is what the backbone makes of N frames.
         self.described = width * (3 if config.moments else 1)
         sizes = (len(config.movements), len(config.scales), len(config.angles))
-        self._sizes = (1, len(STEPS), *sizes)
-        fused, judgements = 3 * self.described, sum(self._sizes)
+        #: How many numbers each judgement has: log odds of being good, steps of liking, classes.
+        self.judgements = (1, len(STEPS), *sizes)
+        fused, judgements = 3 * self.described, sum(self.judgements)
         self.professional, self.liked = nn.Linear(fused, 1), nn.Linear(fused, len(STEPS))
         nn.init.zeros_(self.liked.weight)  # of sets without opinions it learns nothing
         self.movement, self.scale, self.angle = (nn.Linear(fused, n) for n in sizes)
@@ -199,7 +200,7 @@ class ShotRanker(nn.Module):
                 both = by_guides.judged + self.trusted * judged if pictures else by_guides.judged
                 judged = torch.where(known, both, judged)
                 told = torch.where(known, by_guides.told, told)
-            professional, liked, movement, scale, angle = judged.split(self._sizes, 1)
+            professional, liked, movement, scale, angle = judged.split(self.judgements, 1)
             contrast = functional.normalize(self.contrast(average), dim=1)
             classes = (movement, scale, angle)
             logit = professional.squeeze(1)
@@ -210,7 +211,7 @@ class ShotRanker(nn.Module):
     ) -> _Judgement:
         """What is said of shots by features of their pictures and how these move."""
         batch, count = times.shape
-        judged, told = features.new_zeros(batch, sum(self._sizes)), features.new_zeros(batch, 0)
+        judged, told = features.new_zeros(batch, sum(self.judgements)), features.new_zeros(batch, 0)
         fused = fuse(features, times) if pictures else features.new_zeros(batch, 0)
         marked = features.new_zeros(batch, count, self.config.marks)
         if pictures:
@@ -226,7 +227,7 @@ class ShotRanker(nn.Module):
                 told = told + self.reader_moved(seen)
             if self.config.marks and pictures:
                 marked = self.marker(features)
-            judged = judged + self.reasons(torch.cat([told, *self._over_time(marked, times)], 1))
+            judged = judged + self.reasons(torch.cat([told, self.over_time(marked, times)], 1))
             judged = self._faultless(judged, told, self.faults)
         return _Judgement(judged, told, marked, judged[:, :0])
 
@@ -237,17 +238,21 @@ class ShotRanker(nn.Module):
             described: Description = guided(guides)
         frames, shot = described.frames, described.shot
         gathered = self.gathered(shot)
-        judged, told = self.straight(shot).split((sum(self._sizes), self.config.measures), 1)
+        judged, told = self.straight(shot).split((sum(self.judgements), self.config.measures), 1)
         judged = judged + self.judged(gathered)
         marked = frames.new_zeros(*frames.shape[:2], self.config.marks)
         if self.config.measures:
             told = told + self.reader_guided(gathered)
             if self.config.marks:
                 marked = self.marker_guided(frames)
-            known = torch.cat([told, *self._over_time(marked, guides.times)], 1)
-            judged = judged + self.reasons_guided(known)
-            judged = self._faultless(judged, told, self.faults_guided)
+            judged = self.by_reasons(judged, told, self.over_time(marked, guides.times))
         return _Judgement(judged, told, marked, described.meant)
+
+    def by_reasons(self, judged: Tensor, told: Tensor, marked: Tensor) -> Tensor:
+        """Judgements [B, judgements] by guides, with what is told of shots [B, measures] and of frames, over
+        their time [B, 3 marks]."""
+        judged = judged + self.reasons_guided(torch.cat([told, marked], 1))
+        return self._faultless(judged, told, self.faults_guided)
 
     def _faultless(self, judged: Tensor, told: Tensor, counts: Tensor) -> Tensor:
         """Judgements of which those of being good and of being liked hold only for a shot without faults.
@@ -263,8 +268,9 @@ class ShotRanker(nn.Module):
         both = (free + functional.logsigmoid(judged[:, :count])).clamp_max(-1e-6)
         return torch.cat([both - (-both.expm1()).log(), judged[:, count:]], 1)
 
-    def _over_time(self, marked: Tensor, times: Tensor) -> list[Tensor]:
-        return [fuse(marked, times)] if self.config.marks else []
+    def over_time(self, marked: Tensor, times: Tensor) -> Tensor:
+        """What is told of frames [B, T, marks], over their time: [B, 3 marks]."""
+        return fuse(marked, times) if self.config.marks else marked.flatten(1)
 
     def margin(self, out: Output) -> Tensor:
         """What shots are put in order by, [B]: how much greater than those of an average good one the odds

@@ -6,7 +6,8 @@ belongs to those of the same name is kept, and the rest begins anew.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import torch
@@ -44,9 +45,11 @@ def take_over(
             f"{folder}: are weights of a {others.backbone}, and no {words.backbone} can start from them"
         )
     told: list[str] = list(card.data.get("hints") or ())
-    if model.guided is not None and _looks(words) != _looks(others):
-        before, now = (_columns(model.guided, words, config) for config in (others, words))
-        for name in (name for name in now if name in other and name in ours):
+    if model.guided is not None:
+        crowded = _crowded(model, words, others, other)
+        before = _columns(model.guided, words, others, crowded)
+        now = _columns(model.guided, words, words, CROWDED)
+        for name in (name for name in now if name in other and name in ours and before[name] != now[name]):
             if other[name].shape[1] != len(before[name]) or ours[name].shape[1] != len(now[name]):
                 continue
             other[name], new = _placed(other[name], before[name], now[name])
@@ -61,15 +64,21 @@ def take_over(
     return card.sha256, fit
 
 
-def _looks(config: ModelConfig) -> tuple[bool, bool, bool]:
-    """What of guides a network looks at by itself."""
-    return config.meant, config.people, config.crowd
+def _crowded(model: ShotRanker, own: ModelConfig, config: ModelConfig, other: Mapping[str, Tensor]) -> int:
+    """How many numbers told how people stand to each other when other weights were taught: the first of
+    those there are now."""
+    if model.guided is None or "straight.weight" not in other:
+        return CROWDED
+    without = len(_columns(model.guided, own, replace(config, crowd=False), 0)["straight.weight"])
+    return other["straight.weight"].shape[1] - without if config.crowd else CROWDED
 
 
-def _columns(guided: GuideNet, own: ModelConfig, config: ModelConfig) -> dict[str, list[_Column]]:
+def _columns(
+    guided: GuideNet, own: ModelConfig, config: ModelConfig, crowded: int
+) -> dict[str, list[_Column]]:
     """What the columns of matrices that read what is told by guides are of, in a network of that config.
 
-    guided: that part of a network whose config is ``own``
+    guided: that part of a network whose config is ``own``; crowded: numbers of how people stand to each other
     """
     frame = guided.frame + (config.people - own.people) * People.described
     window = WINDOWED * guided.frame + FRAMED if own.meant else 0
@@ -80,7 +89,7 @@ def _columns(guided: GuideNet, own: ModelConfig, config: ModelConfig) -> dict[st
     if config.meant:
         shot += [("meant", k, i) for k in range(WINDOWED) for i in range(frame)]
         shot += [("framed", 0, i) for i in range(FRAMED)]
-    shot += [("crowd", 0, i) for i in range(CROWDED * config.crowd)]
+    shot += [("crowd", 0, i) for i in range(crowded * config.crowd)]
     found = {"gathered.0.weight": shot, "straight.weight": shot, "marker_guided.weight": described}
     if guided.window is not None:
         more = guided.window.frame.in_features - guided.frame

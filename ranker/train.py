@@ -30,9 +30,18 @@ from .engine import quick_bfloat16
 from .errors import RankerError
 from .evaluate import agreement_with_fp32, evaluate, mean
 from .guided import Guided
+from .heads import teach_heads
 from .infer import Ranker, fold_batch_norm
 from .int8 import Ranges, measured_ranges
-from .losses import binary_loss, class_loss, contrast_loss, fault_loss, hint_loss, liking_loss
+from .losses import (
+    binary_loss,
+    class_loss,
+    contrast_loss,
+    fault_loss,
+    hint_loss,
+    liking_loss,
+    measures_loss,
+)
 from .model import OF_GUIDES, ShotRanker, frame_times, normalised
 from .motion import motions
 from .starting import take_over
@@ -67,6 +76,8 @@ def train(
     """
     out = Path(out_dir)
     out.mkdir(parents=True, exist_ok=True)
+    if config.heads and not config.phases and start is None:
+        raise RankerError("heads alone are taught on top of weights: name some to start from")
     torch.set_num_threads(config.threads)
     torch.manual_seed(config.seed)
     device = torch.device("cuda" if torch.cuda.is_available() else "cpu")
@@ -112,7 +123,8 @@ def train(
     moved = torch.from_numpy(motions(data)) if config.motion else None
     model = ShotRanker(shape)
     began, anchor = take_over(model, start, data.hints[0]) if start else (None, {})
-    settle(model, data, learn, config.seed)
+    if config.phases:  # heads alone go by what was usual before
+        settle(model, data, learn, config.seed)
     model.to(device)
     model.to(memory_format=torch.channels_last)  # type: ignore[call-overload]
     keys = momentum_copy(model)
@@ -180,8 +192,11 @@ def train(
                 if name in anchor:
                     first = anchor[name].to(parameter)  # NaN where there is nothing to go back to
                     parameter.lerp_(first.where(first.isfinite(), parameter), config.anchored)
+        if config.heads:
+            teach_heads(model.cpu(), data, learn, config, lambda told: _tell(log, told, report))
         # Small pictures leave batch norm with the wrong statistics for full ones.
-        calibrate(model, data, framed, config, device)
+        if config.phases:
+            calibrate(model.to(device), data, framed, config, device)
         ranges = int8_ranges(model.cpu(), data, framed, config.seed)
         save_weights(out / "weights", model, ranges=ranges)
 
@@ -329,12 +344,8 @@ def _losses(
     classes = class_loss((out.movement, out.scale, out.angle), labels, config.smoothing)
     hint = torch.zeros((), device=device)
     if config.hint_weight and batch.hints.shape[1]:
-        told, hints, faults = out.told, batch.hints.to(device), model.config.of_faults
-        plain = torch.ones(told.shape[1], dtype=torch.bool, device=device)
-        plain[faults] = False
-        hint = hint_loss(told[:, plain], hints[:, plain])
-        hint = hint + config.good_weight * hint_loss(told[:, goods], hints[:, goods])
-        hint = hint + config.fault_weight * fault_loss(told[:, faults], hints[:, faults])
+        hints, faults = batch.hints.to(device), model.config.of_faults
+        hint = measures_loss(out.told, hints, faults, goods, config.fault_weight, config.good_weight)
         if out.marked.shape[2] and batch.query is not None:
             hint = hint + hint_loss(out.marked, batch.marks.to(device))
         if out.mapped.shape[2]:

@@ -7,6 +7,8 @@ import pytest
 import torch
 
 from ranker.crowd import (
+    ASKED,
+    BESIDES,
     CROWDED,
     HALVED,
     IN_THE_WAY,
@@ -22,6 +24,7 @@ from ranker.guides import CHANNELS, FARTHEST, FLOW, MARKS, NEAREST, PERSON_POINT
 
 FRAMES, FOCAL = 8, 35.0
 _HALF = (18.0, 10.125)  # millimetres of a sensor
+_NUMBERS = ASKED + 4
 _HIGH = dict(zip(PERSON_POINTS, (1.75, 1.64, 1.3, 1.0, 0.0), strict=True))  # metres of points above the floor
 
 
@@ -58,10 +61,16 @@ def code(metres: float) -> int:
 
 
 def crowd(told: torch.Tensor, maps: torch.Tensor | None = None) -> np.ndarray:
+    found = sides(told, maps)[:_NUMBERS]
+    return np.sinh(found) / 5
+
+
+def sides(told: torch.Tensor, maps: torch.Tensor | None = None) -> np.ndarray:
+    """All that is told, and from ``_NUMBERS`` on upon which side of what film grammar asks for that is."""
     found = crowd_of(told, empty() if maps is None else maps)
     assert found.shape == (1, CROWDED)
     assert found.isfinite().all()
-    return np.sinh(found[0].numpy()) / 5
+    return found[0].numpy()
 
 
 def test_nobody_spoils_nothing() -> None:
@@ -120,12 +129,67 @@ def test_what_is_near_is_in_the_way_and_what_is_missing_is_told() -> None:
     told[..., MARKS.index("up_waist")] = 0.0
     told[..., MARKS.index("open")] = 1.0
     maps = empty()
+    maps[..., CHANNELS.index("rise")] = 128  # as if one looked at it from everywhere levelly
     assert crowd(told, maps)[IN_THE_WAY] == crowd(told, maps)[MISSING] == 0
     maps[:, :, :, : SIDE // 2, CHANNELS.index("nearness")] = code(1.0)
     assert crowd(told, maps)[IN_THE_WAY] == pytest.approx(0.5)
     maps[:, :, SIDE // 2 :, :, CHANNELS.index("nothing")] = 255
     assert crowd(told, maps)[MISSING] == pytest.approx(1)
     assert crowd(told, maps)[MISSING + 1] == pytest.approx(1)
+
+
+def test_a_head_is_lost_from_behind_that_is_cut_above_the_brow() -> None:
+    subject = somebody(1, 0.0, 3.0, True)
+    cut = somebody(2, 0.6, 2.0, False)
+    lower = 1.02 - cut["up_crown_2"]  # the crown just out of the frame, the eyes well within
+    cut |= {f"up_{point}_2": cut[f"up_{point}_2"] + lower for point in _HIGH}
+    assert cut["up_eyes_2"] < 0.9
+    assert crowd(shot(subject, cut | {"turned_2": 0.5}))[LOST] == 0
+    assert crowd(shot(subject, cut | {"turned_2": -0.5}))[LOST] == pytest.approx(1)
+
+
+def alone(depth: float) -> dict[str, float]:
+    """A shot's one subject, before the same camera, who faces it."""
+    out = {"distance": float(np.log(depth)), "right_face": 0.0, "up_face": 0.0, "away_face": -1.0}
+    for point, high in _HIGH.items():
+        out[f"right_{point}"], out[f"covered_{point}"] = 0.0, 0.0
+        out[f"up_{point}"] = (high - 1.5) / depth * FOCAL / _HALF[1]
+    return out
+
+
+def test_over_a_shoulder_spoils_nothing_besides() -> None:
+    owner = somebody(1, 0.35, 1.0, False)  # near, and no head above it
+    owner |= {f"up_{point}_1": owner[f"up_{point}_1"] + 1.2 for point in _HIGH}
+    back, face = (crowd(shot(alone(2.0), owner | {"turned_1": turned})) for turned in (-0.8, 0.8))
+    assert back[SPOILT] == face[SPOILT] == face[BESIDES] == pytest.approx(1)
+    assert back[BESIDES] == 0
+    behind = somebody(1, 0.7, 4.0, False)
+    behind |= {f"covered_{point}_1": 1.0 for point in ("crown", "eyes")} | {"turned_1": -0.8}
+    assert crowd(shot(alone(2.0), behind))[BESIDES] == crowd(shot(alone(2.0), behind))[SPOILT] > 0.5
+
+
+def test_in_a_place_whoever_lost_their_head_spoils_it() -> None:
+    covered = {f"covered_{point}_2": 1.0 for point in ("crown", "eyes")}
+    two = somebody(1, -0.9, 3.0, True), somebody(2, 0.9, 3.0, True) | covered
+    face = {"right_face": 1.0, "up_face": 0.0, "away_face": 0.0}
+    assert crowd(shot(*two, face))[LOST] == 0  # the shot is about them
+    place = crowd(shot(*two, dict.fromkeys(face, 0.0)))
+    assert place[LOST] == pytest.approx(1)
+    assert place[SPOILT] == pytest.approx(1)
+
+
+def test_it_is_told_on_which_side_of_a_bound_a_shot_is() -> None:
+    told, maps = shot(alone(3.0)), empty()
+    clear = sides(told, maps)[_NUMBERS:]
+    maps[:, :, :, : SIDE // 8, CHANNELS.index("nearness")] = code(0.5)
+    maps[..., CHANNELS.index("rise")] = 128
+    hidden = sides(told, maps)[_NUMBERS:]
+    count = len(clear) // 2
+    assert crowd(told, maps)[ASKED] > 0.05
+    assert (clear[:3] < -0.7).all()
+    assert (hidden[:2] > 0.7).all()
+    assert not clear[count:].any()  # those of a place
+    assert not hidden[count:].any()
 
 
 def test_the_mirror_changes_nothing() -> None:

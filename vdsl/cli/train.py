@@ -31,7 +31,8 @@ def train(
     ] = None,
     clips: Annotated[int, typer.Option(min=32, help="Clips to film, half of them good.")] = 10_000,
     recipe: Annotated[
-        str, typer.Option(help="How to train: paper, cpu, or a JSON file as `training` in config.json.")
+        str,
+        typer.Option(help="How to train: paper, cpu, heads, or a JSON file as `training` in config.json."),
     ] = "paper",
     ablation: Annotated[
         bool, typer.Option("--ablation", help="Train four times: L_b, with L_c, with L_q, all; and compare.")
@@ -131,7 +132,7 @@ def _recipe(name: str) -> TrainConfig:
     try:
         return train_from_json(json.loads(Path(name).read_text("utf-8")))
     except FileNotFoundError:
-        raise RankerError(f"there is no recipe {name}: paper, cpu, or a JSON file") from None
+        raise RankerError(f"there is no recipe {name}: paper, cpu, heads, or a JSON file") from None
     except ValueError as error:
         raise RankerError(f"{name}: is no JSON: {error}") from error
 
@@ -149,5 +150,7 @@ def _say(line: dict[str, Any], console: Any) -> None:
             f"  {held}  {line['seconds']:.0f} s",
             highlight=False,
         )
+    elif "heads" in line:
+        console.print(f"heads {line['heads']}/{line['epochs']}  loss {line['loss']:.3f}", highlight=False)
     elif "measured" in line:
         console.print(json.dumps(line["measured"]), highlight=False)

@@ -76,8 +76,7 @@ def train(
     """
     out = Path(out_dir)
     out.mkdir(parents=True, exist_ok=True)
-    if config.heads and not config.phases and start is None:
-        raise RankerError("heads alone are taught on top of weights: name some to start from")
+    check_start(config, start)
     torch.set_num_threads(config.threads)
     torch.manual_seed(config.seed)
     device = torch.device("cuda" if torch.cuda.is_available() else "cpu")
@@ -216,6 +215,12 @@ def train(
     about = {"training": training, "data": data.about(), "measured": measured}
     save_weights(out / "weights", model, **about, ranges=ranges)
     return measured
+
+
+def check_start(config: TrainConfig, start: str | Path | None) -> None:
+    """Raises :class:`RankerError` for a recipe that teaches on top of weights, without such."""
+    if config.heads and not config.phases and start is None:
+        raise RankerError("heads alone are taught on top of weights: name some to start from (--weights)")
 
 
 def _tells_meant(config: TrainConfig, data: Dataset) -> bool:

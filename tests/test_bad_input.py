@@ -152,3 +152,13 @@ def test_asked_to_stop_it_cleans_up_and_leaves_the_last_good_build(tmp_path: Pat
     assert (running.returncode, said) == (130, "vdsc: interrupted; the last good build is as it was\n")
     assert sorted(p.name for p in tmp_path.iterdir()) == ["out", "story.vds"]
     assert [p.name for p in (tmp_path / "out").iterdir()] == ["storyboard.json"]
+
+
+def test_heads_are_taught_on_top_of_weights_and_nothing_is_filmed_without(tmp_path: Path) -> None:
+    told = CliRunner().invoke(app, ["train", str(tmp_path / "out"), "--recipe", "heads"])
+    assert told.exit_code == 3
+    assert "name some to start from (--weights)" in told.stderr
+    assert not (tmp_path / "out").exists()
+    other = CliRunner().invoke(app, ["train", str(tmp_path / "out"), "--recipe", "hands"])
+    assert other.exit_code == 3
+    assert "there is no recipe hands: paper, cpu, heads, or a JSON file" in other.stderr

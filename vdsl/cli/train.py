@@ -97,6 +97,7 @@ def _train(
     from rich.console import Console
 
     from ranker.ablation import ablate
+    from ranker.train import check_start
     from ranker.train import train as train_ranker
     from ranker.weights import SHIPPED
 
@@ -111,6 +112,7 @@ def _train(
 
     with failures_told(out, kept=RESUMED):
         config = replace(_recipe(recipe), seed=seed)
+        check_start(config, start)  # before anything is filmed
         if data == out / "clips" or not (data / "dataset.json").exists():
             with Bars(console) as bars:
                 generate(data, clips, seed, device.value, bars)

@@ -114,7 +114,10 @@ def _above_the_floor(marks: dict[str, Tensor], maps: Tensor) -> Tensor:
     long = _long(across, across[-_LOWEST:].unsqueeze(1), lens[..., None, None])
     drop = long * -_angle(rise[:, :, -_LOWEST:]).sin() * away_of(code[:, :, -_LOWEST:]).exp()
     drop = torch.where(code[:, :, -_LOWEST:] > 0, drop, 0.0).flatten(2)
-    return torch.minimum(-along * feet.tan(), drop.quantile(_FLOOR, -1)).clamp_min(0)
+    ordered = drop.sort(-1).values  # torch's own quantile takes no empty batches
+    place = _FLOOR * (ordered.shape[-1] - 1)
+    floor = ordered[..., int(place)].lerp(ordered[..., int(place) + 1], place % 1)
+    return torch.minimum(-along * feet.tan(), floor).clamp_min(0)
 
 
 def _angle(rise: Tensor) -> Tensor:

@@ -64,6 +64,11 @@ def test_what_is_near_is_in_the_way_as_far_as_it_covers_the_picture() -> None:
     assert foreground_of(told, beside).way.max() == 0
 
 
+def test_of_no_shots_nothing_is_told() -> None:
+    found = foreground_of(marks(1.5)[:0], maps(1.5)[:0])
+    assert [tuple(part.shape) for part in found] == [(0, 2)] * 4
+
+
 def test_the_subject_is_in_nobodys_way_and_people_are_no_things() -> None:
     told = marks(1.5)
     near = put(maps(1.5), "nearness", int(code(np.array(1.0))))

@@ -242,7 +242,7 @@ def _view(
         marks = np.where([name.startswith(MIRRORED) for name in data.frame_hints[0]], -marks, marks)
     guides = data.guides(np.array([index])) if config.guides else None
     seen = picked[:count] if glanced else np.arange(data.frames)
-    kept_back = guides is not None and bool(rng.random() < config.unguided)
+    kept_back = guides is not None and bool(rng.random() < config.unguided or not data.guided[index])
     if guides is not None:
         guides = guides.mirrored() if flipped else guides
         unknown = np.float16(np.nan if glanced or kept_back else 1)

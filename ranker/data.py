@@ -103,8 +103,10 @@ class ShardWriter:
             self.folder.mkdir(parents=True, exist_ok=True)
             path = self.folder / "dataset.json"
             if path.exists():
-                if json.loads(path.read_text("utf-8")) != header:
-                    raise RankerError(f"{path}: another kind of training set is there already")
+                there = json.loads(path.read_text("utf-8"))
+                if there != header:
+                    how = _difference(there, header)
+                    raise RankerError(f"{path}: another kind of training set is there already ({how})")
             else:
                 _replace(path, json.dumps(header, indent=1, ensure_ascii=False).encode())
             found = _shards(self.folder)
@@ -213,7 +215,7 @@ class Dataset:
             self.labels: list[Label] = []
             self._where: list[tuple[int, int]] = []
             self._arrays: list[NDArray[np.uint8]] = []
-            guided: list[Guides] | None = []
+            self._guided: list[Guides | None] = []
             for number, path in enumerate(_shards(self.folder)):
                 labels = _labels(path)
                 array = np.load(path.with_suffix(".npy"), mmap_mode="r", allow_pickle=False)
@@ -224,12 +226,9 @@ class Dataset:
                 ):
                     raise ValueError(f"{path.name} does not fit its frames")
                 self._arrays.append(array)
-                found = _guides(path, len(labels), self.frames)
-                guided = None if guided is None or found is None else [*guided, found]
+                self._guided.append(_guides(path, len(labels), self.frames))
                 self._where += [(number, i) for i in range(len(labels))]
                 self.labels += labels
-            #: Of all clips, None where some have none.
-            self.guided: list[Guides] | None = guided or None
         except (OSError, ValueError, KeyError, TypeError) as error:
             raise RankerError(f"{folder}: is not a training set, or a damaged one: {error}") from error
 
@@ -242,12 +241,16 @@ class Dataset:
         return scaled(np.asarray(self._arrays[shard][row, list(frames)]), size)
 
     def guides(self, clips: NDArray[np.int64], frames: Sequence[int] | None = None) -> Guides | None:
-        """Guides of chosen clips, or of some of their frames; None in a set where not all have some."""
-        if self.guided is None:
+        """Guides of chosen clips, or of some of their frames; of those without (``guided``) as of what is
+        kept back (:meth:`ranker.guides.Guides.unknown`). None in a set without any."""
+        if not self.guided.any():
             return None
+        some = slice(None) if frames is None else list(frames)
+        nothing = Guides.unknown(1, self.frames)
         maps, flow, marks = [], [], []
         for shard, row in (self._where[i] for i in clips):
-            of, some = self.guided[shard], slice(None) if frames is None else list(frames)
+            known = self._guided[shard]
+            of, row = (nothing, 0) if known is None else (known, row)
             maps.append(of.maps[row][some])
             flow.append(of.flow[row])
             marks.append(of.marks[row][some])
@@ -318,6 +321,11 @@ class Dataset:
     def bare(self) -> NDArray[np.bool_]:
         """Clips [N] that have guides alone, and no frames."""
         return np.array([label.bare for label in self.labels], bool)
+
+    @cached_property
+    def guided(self) -> NDArray[np.bool_]:
+        """Clips [N] that have guides; films of cameras have none."""
+        return np.array([self._guided[shard] is not None for shard, _ in self._where], bool)
 
     @cached_property
     def doubtful(self) -> NDArray[np.bool_]:
@@ -444,6 +452,22 @@ def _guides(path: Path, clips: int, frames: int) -> Guides | None:
 
 def _labels(path: Path) -> list[Label]:
     return [Label(**json.loads(line)) for line in path.read_text("utf-8").splitlines() if line.strip()]
+
+
+def made_of(folder: str | Path) -> dict[str, Any] | None:
+    """How the training set in a folder says it is made; None where there is none, or it does not say."""
+    try:
+        found = json.loads((Path(folder) / "dataset.json").read_text("utf-8")).get("made")
+    except (OSError, ValueError, AttributeError):
+        return None
+    return found if isinstance(found, dict) else None
+
+
+def _difference(there: Any, asked: dict[str, Any]) -> str:
+    """In what a training set is of another kind than is asked for."""
+    flat = [{**d, **(d.pop("made", None) or {})} if isinstance(d, dict) else {} for d in (there, dict(asked))]
+    keys = [k for k in dict.fromkeys([*flat[0], *flat[1]]) if flat[0].get(k) != flat[1].get(k)]
+    return ", ".join(f"{k} {flat[0].get(k, 'unsaid')} there, {flat[1].get(k, 'unsaid')} here" for k in keys)
 
 
 def _replace(path: Path, content: bytes) -> None:

@@ -29,7 +29,7 @@ def evaluate(
 ) -> dict[str, Any]:
     """Measure on the given clips, at the full picture size, as :class:`Ranker` scores them.
 
-    guided: with the guides of the clips, if they have some
+    guided: with the guides of those clips that have some, else all by pictures alone
     By p_b ``auc`` and ``auc_by_strength {upper end: auc}`` against what was spoilt, ``auc_all`` against all
     negatives, ``auc_by_kind`` of those that say their kind,
     ``accuracy {movement, scale, angle, professional}`` (classes over positives), ``clips``; a value is None
@@ -38,13 +38,14 @@ def evaluate(
     ranker = model if isinstance(model, Ranker) else Ranker(_copy(model))
     classes, label = data.classes[clips], data.professional[clips] > 0.5
     logit, right = np.zeros(len(clips)), np.full((len(clips), 3), np.nan)
-    for begin in range(0, len(clips), _AT_ONCE):
-        rows = slice(begin, begin + _AT_ONCE)
-        scores = ranker.score(
-            _frames(ranker, data, clips[rows]), data.guides(clips[rows]) if guided else None
-        )
-        logit[rows] = scores.logit
-        right[rows] = _right(scores, classes[rows])
+    told = data.guided[clips] & guided
+    for group in (np.flatnonzero(told), np.flatnonzero(~told)):
+        for begin in range(0, len(group), _AT_ONCE):
+            rows = group[begin : begin + _AT_ONCE]
+            guides = data.guides(clips[rows]) if told[rows[0]] else None
+            scores = ranker.score(_frames(ranker, data, clips[rows]), guides)
+            logit[rows] = scores.logit
+            right[rows] = _right(scores, classes[rows])
     sure = ~data.doubtful[clips]
     strength = np.array([data.labels[i].strength for i in clips])
     kind = np.array([str(data.labels[i].about.get("kind", "")) for i in clips], object)
@@ -69,11 +70,11 @@ def evaluate(
 
 
 def agreement_with_fp32(
-    model: ShotRanker, ranker: Ranker, data: Dataset, clips: NDArray[np.int64]
+    model: ShotRanker, ranker: Ranker, data: Dataset, clips: NDArray[np.int64], guided: bool = True
 ) -> float | None:
     """Spearman's correlation between the margins of a ranker and of its model in float32; None below 2 clips.
 
-    model: with the same weights, on any device
+    model: with the same weights, on any device; guided: as in :func:`evaluate`
     """
     if len(clips) < 2:
         return None
@@ -83,15 +84,16 @@ def agreement_with_fp32(
     model.eval()
     for clip in clips:
         frames = _frames(ranker, data, np.array([clip]))
-        guides = data.guides(np.array([clip])) if model.config.guides else None
+        told = bool(guided and model.config.guides and data.guided[clip])
+        guides = data.guides(np.array([clip])) if told else None
         quick.append(float(ranker.score(frames, guides).margin[0]))
         with torch.inference_mode():
             moved = None
             if model.config.motion and guides is None:
                 moved = motion(torch.from_numpy(frames).to(device))
-            guided = None if guides is None else Guided.of(guides, times[0])
+            by = None if guides is None else Guided.of(guides, times[0])
             pictures = torch.from_numpy(scaled(frames[0], model.config.inner)[None]).to(device)
-            out = model(normalised(pictures), times, moved, guided)
+            out = model(normalised(pictures), times, moved, by)
             exact.append(float(model.margin(out)[0]))
     return spearman(np.array(exact), np.array(quick))
 

@@ -95,6 +95,13 @@ class Guides:
     flow: NDArray[np.float16]
     marks: NDArray[np.float16]
 
+    @classmethod
+    def unknown(cls, shots: int, frames: int) -> Guides:
+        """Of shots that nothing is told of: zeros, and motion that is not known."""
+        flow = np.full((shots, len(pairs(frames)), FLOW, FLOW, 2), np.nan, np.float16)
+        marks = np.zeros((shots, frames, len(MARKS)), np.float16)
+        return cls(np.zeros((shots, frames, SIDE, SIDE, len(CHANNELS)), np.uint8), flow, marks)
+
     def __len__(self) -> int:
         return len(self.maps)
 

@@ -60,10 +60,11 @@ def teach_heads(
 ) -> None:
     """Teach what a network tells and judges by guides, ``config.heads`` times over these clips.
 
-    report: called after each time with its number and the mean loss. Raises :class:`RankerError` for weights
-    or clips without guides or measures.
+    report: called after each time with its number and the mean loss. Clips without guides are left out.
+    Raises :class:`RankerError` for weights or clips without guides or measures.
     """
-    if model.guided is None or not model.config.measures or data.guided is None:
+    clips = clips[data.guided[clips]]
+    if model.guided is None or not model.config.measures or not len(clips):
         raise RankerError("heads alone are taught by guides and what is known in numbers: there are none")
     model.eval()
     known = _described(model, data, clips, config)

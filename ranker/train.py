@@ -86,6 +86,7 @@ def train(
     learn, held = data.split(config.held_out, config.seed)
     held = held[~data.bare[held]]
     framed = learn[~data.bare[learn]]  # the others are for phases that look at guides alone
+    guided = learn[data.guided[learn]]  # films of cameras are for those that look at pictures
     if len(framed) < 2:
         raise RankerError(f"{data_dir}: there are too few clips to train on")
 
@@ -107,10 +108,10 @@ def train(
         first_fault=data.faults.start if config.hint_weight else 0,
         faults=data.faults.stop - data.faults.start if config.hint_weight else 0,
         marks=len(data.frame_hints[0]) if config.hint_weight and data.hints[0] else 0,
-        guides=config.guides if data.guided is not None else 0,
+        guides=config.guides if len(guided) else 0,
         meant=_tells_meant(config, data),
-        people=config.guides > 0 and data.guided is not None,
-        crowd=config.guides > 0 and data.guided is not None,
+        people=config.guides > 0 and len(guided) > 0,
+        crowd=config.guides > 0 and len(guided) > 0,
         liking=liking,
         appeal=taught_of.index(_APPEAL) if _APPEAL in taught_of else 0,
         appealing=APPEALING if liking and _APPEAL in taught_of else 0.0,
@@ -123,7 +124,7 @@ def train(
     model = ShotRanker(shape)
     began, anchor = take_over(model, start, data.hints[0]) if start else (None, {})
     if config.phases:  # heads alone go by what was usual before
-        settle(model, data, learn, config.seed)
+        settle(model, data, guided, config.seed)
     model.to(device)
     model.to(memory_format=torch.channels_last)  # type: ignore[call-overload]
     keys = momentum_copy(model)
@@ -132,7 +133,7 @@ def train(
 
     # Where an earlier run stopped.
     schedule = [phase for phase in config.phases for _ in range(phase.epochs)]
-    pools = [framed if phase.size else learn for phase in schedule]
+    pools = [framed if phase.size else guided for phase in schedule]
     # Guides are taught by many more clips than have pictures, which do not change what that taught.
     apart = any(phase.size == 0 for phase in schedule)
     lengths = [math.ceil(count_of(data, *of) / of[1].batch) for of in zip(pools, schedule, strict=True)]
@@ -226,7 +227,7 @@ def check_start(config: TrainConfig, start: str | Path | None) -> None:
 def _tells_meant(config: TrainConfig, data: Dataset) -> bool:
     """Whether a network learns which frames are meant to show the subject."""
     taught = config.hint_weight > 0 and bool(data.hints[0]) and bool(np.isfinite(data.meant).any())
-    return taught and config.guides > 0 and data.guided is not None
+    return taught and config.guides > 0 and bool(data.guided.any())
 
 
 def settle(model: ShotRanker, data: Dataset, clips: NDArray[np.int64], seed: int = 0) -> None:

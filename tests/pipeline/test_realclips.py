@@ -8,11 +8,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from ranker.data import Dataset
+from ranker.data import Dataset, ShardWriter
 from ranker.errors import RankerError
 from ranker.taste import Taste, save_taste
 from runtime.video import VideoError, write_video
+from vdsl.pipeline.dataset import made
 from vdsl.pipeline.keys import judge_digest
+from vdsl.pipeline.labels import WORDS
 from vdsl.pipeline.lock import lock_path
 from vdsl.pipeline.options import Options
 from vdsl.pipeline.realclips import add_films, add_picks, clip_of, preferences, words_of
@@ -46,8 +48,8 @@ def test_real_clips_are_added_once_and_bad_ones_told(tmp_path: Path) -> None:
     film(films / "two" / "short.mp4", frames=5)
     (films / "broken.mp4").write_bytes(b"no film")
     heard: list[str] = []
-    assert add_films(data, films, 0, heard.append, 32) == 2
-    assert add_films(data, films, 0, heard.append, 32) == 0
+    assert add_films(data, films, made(0), heard.append, 32) == 2
+    assert add_films(data, films, made(0), heard.append, 32) == 0
     assert any("short.mp4" in text for text in heard)
     assert any("broken.mp4" in text for text in heard)
     labels = Dataset(data).labels
@@ -59,7 +61,25 @@ def test_real_clips_are_added_once_and_bad_ones_told(tmp_path: Path) -> None:
     with pytest.raises(VideoError, match="8 frames"):
         clip_of(films / "two" / "short.mp4")
     with pytest.raises(RankerError, match="no clips"):
-        add_films(data, tmp_path / "data", 0)
+        add_films(data, tmp_path / "data", made(0))
+
+
+def test_real_clips_go_into_a_set_of_any_kind_and_another_size_is_told(tmp_path: Path) -> None:
+    """They are the same to all: of a set with few pictures, or another seed, they were refused."""
+    film(tmp_path / "films" / "a.mp4")
+    data = tmp_path / "data"
+    kind = made(7, pictures=0.5, every=True)
+    with ShardWriter(data, WORDS, (32, 32), 8, made=kind):
+        pass
+    assert add_films(data, tmp_path / "films", made(0), size=32) == 1
+    assert Dataset(data).made == kind
+    with pytest.raises(RankerError, match=r"size \[32, 32\] there, \[64, 64\] here"):
+        add_films(data, tmp_path / "films", made(0), size=64)
+    with pytest.raises(RankerError, match=r"seed 7 there, 0 here, pictures 0.5 there, unsaid here"):
+        ShardWriter(data, WORDS, (32, 32), 8, made=made(0))
+    other = tmp_path / "other"
+    assert add_films(other, tmp_path / "films", kind, size=32) == 1
+    assert Dataset(other).made == kind  # so that filming goes on with it
 
 
 def script_with_choice(folder: Path) -> Path:
@@ -85,8 +105,8 @@ def test_choices_are_read_with_the_takes_they_were_among(tmp_path: Path) -> None
     assert liked.frames.shape == (3, 8, 32, 32, 3)
     assert liked.chosen == 1
     assert abs(int(liked.frames[1, 0, 8, 8, 2]) - 120) < 8
-    assert add_picks(tmp_path / "data", [script], 0, 32) == 1
-    assert add_picks(tmp_path / "data", [script], 0, 32) == 0
+    assert add_picks(tmp_path / "data", [script], made(0), 32) == 1
+    assert add_picks(tmp_path / "data", [script], made(0), 32) == 0
     (label,) = Dataset(tmp_path / "data").labels
     assert (label.movement, label.scale, label.angle) == ("push/pull", "medium", "high-angle")
     lock_path(script).unlink()

@@ -15,6 +15,7 @@ from ranker.composed import COMPOSED, EYES_INSIDE, SUMMED, composed, over_time
 from ranker.config import Phase
 from ranker.data import Dataset, ShardWriter
 from ranker.errors import RankerError
+from ranker.evaluate import agreement_with_fp32, evaluate
 from ranker.guided import Evened, Guided, _paces
 from ranker.guides import CHANNELS, FLOW, MARKS, POINTS, SIDE, SUBJECT_MARKS, Guides, joined, pairs
 from ranker.infer import Ranker
@@ -67,8 +68,8 @@ def test_guides_lie_beside_the_frames_of_their_clips(tmp_path: Path) -> None:
     np.testing.assert_array_equal(data.liked[::2], 0.0)  # all good ones are liked alike
 
 
-def test_a_set_in_which_some_have_none_is_taught_without(tmp_path: Path) -> None:
-    write_guided(tmp_path / "data", 24, bare=5)
+def test_a_set_in_which_none_has_any_is_taught_without(tmp_path: Path) -> None:
+    write_guided(tmp_path / "data", 24, bare=24)
     data = Dataset(tmp_path / "data")
     assert len(data) == 24
     assert data.guides(np.arange(3)) is None
@@ -77,6 +78,41 @@ def test_a_set_in_which_some_have_none_is_taught_without(tmp_path: Path) -> None
     assert Ranker.load(tmp_path / "out" / "weights", "cpu").config.guides == 0
     with pytest.raises(RankerError, match="no guides, and the recipe looks at nothing else"):
         train(tmp_path / "data", tmp_path / "other", replace(TINY, phases=phases[:1]))
+
+
+def test_films_beside_clips_with_guides_are_learnt_by_their_pictures(tmp_path: Path) -> None:
+    """A handful of films of cameras once switched off the guides of all other clips."""
+    write_guided(tmp_path / "data", 60, bare=5)
+    data = Dataset(tmp_path / "data")
+    np.testing.assert_array_equal(data.guided, np.arange(60) >= 5)
+    mixed = data.guides(np.array([2, 10]))
+    assert mixed is not None
+    known = Guided.of(mixed, frame_times(model_config())).known
+    assert known.tolist() == [False, True]
+    config = replace(TINY, guides=32, unguided=0.0, motion=32)
+    (batch,) = batches(data, np.arange(5), config.phases[0], config, 0)
+    assert batch.guides is not None
+    assert not batch.guides.known.any()
+    phases = (Phase(8, 0, batch=8), replace(TINY.phases[0], epochs=1))
+    lines: list[dict] = []
+    train(tmp_path / "data", tmp_path / "out", replace(config, phases=phases), lines.append)
+    model, ranker = load_model(tmp_path / "out/weights")[0], Ranker.load(tmp_path / "out/weights", "cpu")
+    assert ranker.config.guides == 32
+    assert lines[0]["steps"] == 8 * 7 + 4  # of 55 by guides, of 60 by pictures
+    told = evaluate(ranker, data, np.arange(60))
+    alone = evaluate(ranker, data, np.arange(60), guided=False)
+    assert told["auc"] > alone["auc"] + 0.2  # pictures say nothing
+    films = np.array([0, 1, 2, 4])  # number 3 is doubtful
+    by_pictures = ranker.score(_pictures(data, films)).logit > 0
+    some = evaluate(ranker, data, films)["accuracy"]["professional"]
+    assert some == np.mean(by_pictures == (data.professional[films] > 0.5))
+    exact = agreement_with_fp32(model, ranker, data, np.arange(12), guided=False)
+    assert exact is not None
+    assert exact > 0.9
+
+
+def _pictures(data: Dataset, clips: np.ndarray) -> np.ndarray:
+    return np.stack([data.clip(int(i), range(FRAMES), SIZE) for i in clips])
 
 
 def test_damaged_guides_are_told(tmp_path: Path) -> None:

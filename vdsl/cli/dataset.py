@@ -55,7 +55,7 @@ def dataset(
     # Only now: --help must not wait for numpy and taichi.
     from rich.console import Console
 
-    from ..pipeline.dataset import generate
+    from ..pipeline.dataset import generate, made
     from ..pipeline.realclips import add_films, add_picks
     from .failures import RESUMED, failures_told
     from .progress import Bars
@@ -64,9 +64,9 @@ def dataset(
     with failures_told(out, kept=RESUMED):
         added = 0
         if positives is not None:
-            added += add_films(out, positives, seed, console.print, size)
+            added += add_films(out, positives, made(seed, pictures, every), console.print, size)
         if picks:
-            added += add_picks(out, picks, seed, size)
+            added += add_picks(out, picks, made(seed, pictures, every), size)
         with Bars(console) as bars:
             film = partial(generate, progress=bars, size=size, pictures=pictures, every=every)
             filmed = film(out, clips, seed, device.value) if clips else 0

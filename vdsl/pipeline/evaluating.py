@@ -33,6 +33,7 @@ def evaluated(
 ) -> dict[str, Any]:
     """Measure weights on the clips of a set that are for testing, and by picks hidden among proposals.
 
+    ``by_pictures_alone``: the clips without their guides, as films of cameras have none
     by_guides: judge the latter by their guides alone, for which nobody has to draw pictures
     Raises :class:`ranker.RankerError` for a set or weights that cannot be used, OSError.
     """
@@ -50,13 +51,18 @@ def evaluated(
         raise RankerError(f"{data}: keeps no clips for testing; film one with `vdsc dataset`")
     if clips is not None:
         test = np.sort(np.random.default_rng(seed).permutation(test)[:clips])
-    watcher.begin("clips", len(test), "clips")
+    watcher.begin("clips", 2 * len(test), "clips")
     c = ranker.config
     held_set.words = Words(c.movements, c.scales, c.angles)  # what the ranker was taught, maybe others
     found = evaluate(ranker, held_set, test)
     watcher.advance("clips", len(test), 0.0)
     some = np.random.default_rng(seed + 1).permutation(test)[:exact]
     found["spearman_fp32"] = agreement_with_fp32(model, ranker, held_set, some)
+    # As films of cameras are judged, of which nothing is told but what they show.
+    alone = evaluate(ranker, held_set, test, guided=False)
+    watcher.advance("clips", len(test), 0.0)
+    alone["spearman_fp32"] = agreement_with_fp32(model, ranker, held_set, some, guided=False)
+    found["by_pictures_alone"] = alone
     judged = "guides" if by_guides else ranker.engine
     kept = data / "hidden" / f"{card.sha256[:12]}-{judged}.jsonl"
     found |= told(hide(ranker, kept, proposals, seed, device, progress, not by_guides) if proposals else [])

@@ -1,8 +1,8 @@
 """Clips out of films: real ones as positives, and the takes writers chose of their builds.
 
-Assumes one shot a file. Guarantees eight frames as the discriminator sees a proposal: the middle of eight
-equal parts, squeezed into a square as its pictures are. What cannot be read is told, not skipped in
-silence.
+Assumes one shot a file. Guarantees eight frames as the discriminator sees a proposal: evenly spaced from the
+first to the last, squeezed into a square as its pictures are. They have no guides, so they are learnt from by
+their pictures alone. What cannot be read is told, not skipped in silence.
 """
 
 from __future__ import annotations
@@ -20,13 +20,12 @@ import numpy as np
 from av.error import FFmpegError
 from numpy.typing import NDArray
 
-from ranker.data import ShardWriter
+from ranker.data import ShardWriter, made_of
 from ranker.errors import RankerError
 from runtime.video import VideoError
 
 from ..emit.video import take_paths
 from ..lang.words import CAMERA_WORDS
-from .dataset import made
 from .filming import SEGMENTS, segment_frames
 from .labels import WORDS, classes
 from .lock import lock_path, read_lock
@@ -76,17 +75,22 @@ def _pictures(path: Path) -> Iterator[av.VideoFrame]:
 
 
 def add_films(
-    folder: Path, films: Path, seed: int, tell: Callable[[str], None] = lambda text: None, size: int = 224
+    folder: Path,
+    films: Path,
+    made: dict[str, Any],
+    tell: Callable[[str], None] = lambda text: None,
+    size: int = 224,
 ) -> int:
     """Add real clips below a folder as positives to a training set; returns how many were added.
 
+    made: how the set is going to be made (:func:`vdsl.pipeline.dataset.made`), where there is none yet
     Camera words in a file's name are its labels (``pan-left_medium_eye-level_012.mp4``); what is not said is
     not known. Clips of one folder stay on one side of the split. Those added before are not added again.
     """
     paths = sorted(p for p in films.rglob("*") if p.suffix.lower() in FILMS)
     if not paths:
         raise RankerError(f"{films}: there are no clips ({', '.join(FILMS)})")
-    with ShardWriter(folder, WORDS, (size, size), SEGMENTS, shard=64, made=made(seed)) as writer:
+    with _writer(folder, made, size) as writer:
         known = {label.about.get("file") for label in writer.labels}
         added = 0
         for path in paths:
@@ -116,9 +120,12 @@ def words_of(name: str) -> tuple[str | None, str | None, str | None]:
     return found
 
 
-def add_picks(folder: Path, scripts: list[Path], seed: int, size: int = 224) -> int:
-    """Add the takes chosen for scripts, out of their builds, as positives; returns how many were added."""
-    with ShardWriter(folder, WORDS, (size, size), SEGMENTS, shard=64, made=made(seed)) as writer:
+def add_picks(folder: Path, scripts: list[Path], made: dict[str, Any], size: int = 224) -> int:
+    """Add the takes chosen for scripts, out of their builds, as positives; returns how many were added.
+
+    made: as in :func:`add_films`
+    """
+    with _writer(folder, made, size) as writer:
         known = {label.about.get("file") for label in writer.labels}
         added = 0
         for script in scripts:
@@ -132,6 +139,12 @@ def add_picks(folder: Path, scripts: list[Path], seed: int, size: int = 224) -> 
                 writer.add(liked.frames[liked.chosen], True, *labels, group, 0.0, _side(group), about)
                 added += 1
         return added
+
+
+def _writer(folder: Path, made: dict[str, Any], size: int) -> ShardWriter:
+    """Goes on with a set, however it is made: films are the same to all."""
+    there = made_of(folder)
+    return ShardWriter(folder, WORDS, (size, size), SEGMENTS, shard=64, made=there or made)
 
 
 def preferences(script: Path, size: int = 224, build: Path | None = None) -> list[Preference]:

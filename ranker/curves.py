@@ -11,8 +11,8 @@ from pathlib import Path
 from typing import Any
 
 _WIDTH, _HEIGHT, _LEFT, _TOP, _GAP = 640, 200, 52, 28, 56
-_COLORS = ("#0f766e", "#b45309", "#6d28d9", "#be123c", "#475569")
-_LOSSES = ("loss", "binary", "class", "contrast")
+_COLORS = ("#0f766e", "#b45309", "#6d28d9", "#be123c", "#475569", "#1d4ed8")
+_LOSSES = ("loss", "binary", "class", "contrast", "hint", "order")
 
 
 def draw_curves(folder: Path) -> None:
@@ -29,6 +29,7 @@ def draw_curves(folder: Path) -> None:
 def curves_svg(epochs: Sequence[Mapping[str, Any]]) -> str:
     """The drawing; epochs: lines of the log in order."""
     losses = {name: [(e["epoch"], e[name]) for e in epochs if e.get(name) is not None] for name in _LOSSES}
+    losses = {name: points for name, points in losses.items() if any(value for _, value in points)}
     names = dict.fromkeys(name for e in epochs for name in e.get("held_out") or {})
     right = {
         name: [

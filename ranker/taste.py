@@ -48,10 +48,11 @@ class Taste:
 
 @dataclass(frozen=True, eq=False)
 class Choice:
-    """A shot's takes as the ranker sees them: features [T, D], margins [T]; which was chosen."""
+    """A shot's takes: features [T, D] as the ranker sees them, log odds [T] by which they were put in order
+    before anybody chose; which was chosen."""
 
     features: NDArray[np.float32]
-    margins: NDArray[np.float32]
+    margins: NDArray[np.floating]
     chosen: int
 
 

@@ -17,7 +17,15 @@ from vdsl.pipeline import glance
 from vdsl.pipeline.compile import Result, Workshop, compile_file
 from vdsl.pipeline.filming import Camerawork, Seen
 from vdsl.pipeline.glance import Looked, Scored, Screening, second_looks
-from vdsl.pipeline.judging import BY_GUIDES, BY_PICTURES, DiscriminatorJudge, GeometryJudge, Glance, Judge
+from vdsl.pipeline.judging import (
+    BEFORE_TASTE,
+    BY_GUIDES,
+    BY_PICTURES,
+    DiscriminatorJudge,
+    GeometryJudge,
+    Glance,
+    Judge,
+)
 from vdsl.pipeline.options import Options
 from vdsl.pipeline.progress import Silence, StageClock
 from vdsl.pipeline.witness import MEASURE
@@ -202,13 +210,14 @@ def test_what_was_looked_at_goes_before_what_was_not() -> None:
     assert {i: m["visibility"] for i, m in scored.measures.items()} == {i: i for i in (3, *range(24, 40))}
 
 
-def test_the_discriminator_glances_by_guides_and_with_a_taste_by_pictures(tmp_path: Path) -> None:
+def test_the_discriminator_glances_by_guides_and_looks_at_more_with_a_taste(tmp_path: Path) -> None:
     plain = DiscriminatorJudge(None, "cpu")
     assert plain.glances == BY_GUIDES
     taste = tmp_path / "taste.json"
     nothing = np.zeros(2048, np.float32)
     save_taste(taste, Taste(nothing, nothing, load_card().sha256, 1))
-    assert DiscriminatorJudge(None, "cpu", taste).glances == BY_PICTURES
+    assert DiscriminatorJudge(None, "cpu", taste).glances == BEFORE_TASTE
+    assert second_looks(80, BEFORE_TASTE) == 20
 
 
 def test_a_draft_proposes_for_the_takes_that_follow(project: Path) -> None:

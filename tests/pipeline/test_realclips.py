@@ -13,6 +13,7 @@ from ranker.errors import RankerError
 from ranker.taste import Taste, save_taste
 from runtime.video import VideoError, write_video
 from vdsl.pipeline.dataset import made
+from vdsl.pipeline.judging import log_odds
 from vdsl.pipeline.keys import judge_digest
 from vdsl.pipeline.labels import WORDS
 from vdsl.pipeline.lock import lock_path
@@ -93,8 +94,9 @@ def script_with_choice(folder: Path) -> Path:
     takes = []
     for rank, key in enumerate(keys, 1):
         film(folder / "build" / "tale" / "shots" / shot / f"take-{rank}.mp4", blue=60 * rank)
-        takes.append({"rank": rank, "key": key, "movement": "push", "scale": "medium", "angle": "high-angle"})
-    document = {"shots": [{"id": shot, "takes": takes}]}
+        words = {"movement": "push", "scale": "medium", "angle": "high-angle"}
+        takes.append({"rank": rank, "key": key, "score": 0.9 - 0.1 * rank, **words})
+    document = {"judge": "ranker", "taste": None, "shots": [{"id": shot, "takes": takes}]}
     (folder / "build" / "tale" / "storyboard.json").write_text(json.dumps(document))
     return script
 
@@ -105,6 +107,7 @@ def test_choices_are_read_with_the_takes_they_were_among(tmp_path: Path) -> None
     assert liked.frames.shape == (3, 8, 32, 32, 3)
     assert liked.chosen == 1
     assert abs(int(liked.frames[1, 0, 8, 8, 2]) - 120) < 8
+    assert liked.odds == pytest.approx([log_odds(0.8), log_odds(0.7), log_odds(0.6)])
     assert add_picks(tmp_path / "data", [script], made(0), 32) == 1
     assert add_picks(tmp_path / "data", [script], made(0), 32) == 0
     (label,) = Dataset(tmp_path / "data").labels

@@ -376,6 +376,41 @@ def test_all_clips_of_a_story_may_get_pictures(tmp_path: Path, monkeypatch: pyte
         film(tmp_path / "all", len(every) + 1)
 
 
+def test_what_is_stopped_and_gone_on_with_is_the_same_to_the_byte(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    stopping: list[int] = []
+
+    def maker(making: object) -> object:
+        def film(number: int) -> list[_Filmed]:
+            if number in stopping:
+                stopping.remove(number)
+                raise KeyboardInterrupt
+            rng = np.random.default_rng(number)
+            count = int(rng.integers(0, 9))  # of some stories nothing comes
+            frames = rng.integers(0, 255, (count, 8, 32, 32, 3), dtype=np.uint8)
+            about = {"story": number, "kind": "designer"}
+            labels = [(True, "static", None, None, "kitchen", 0.0, "train", about) for _ in range(count)]
+            return [_Filmed(frames, labels)] if count else []
+
+        return film
+
+    monkeypatch.setattr("vdsl.pipeline.dataset._maker", maker)
+    film = partial(generate, clips=400, seed=4, device="cpu", size=32, processes=1)
+    whole = film(tmp_path / "whole")
+    for number in (3, 30, 70):
+        stopping.append(number)
+        with pytest.raises(KeyboardInterrupt):
+            film(tmp_path / "stopped")
+    assert len(Dataset(tmp_path / "stopped")) < whole
+    assert film(tmp_path / "stopped") == whole >= 400
+    names = sorted(path.name for path in (tmp_path / "whole").iterdir())
+    assert names == sorted(path.name for path in (tmp_path / "stopped").iterdir())
+    assert len(names) > 10
+    for name in names:
+        assert (tmp_path / "whole" / name).read_bytes() == (tmp_path / "stopped" / name).read_bytes(), name
+
+
 @pytest.mark.slow
 def test_several_processes_make_the_set_that_one_makes(tmp_path: Path) -> None:
     for processes in (1, 2):

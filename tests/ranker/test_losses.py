@@ -11,7 +11,16 @@ from ranker_clips import model_config
 
 from ranker.composed import fuse
 from ranker.dictionary import Dictionary, follow, momentum_copy
-from ranker.losses import STEPS, binary_loss, class_loss, contrast_loss, fault_loss, hint_loss, liking_loss
+from ranker.losses import (
+    STEPS,
+    binary_loss,
+    class_loss,
+    contrast_loss,
+    fault_loss,
+    hint_loss,
+    liking_loss,
+    measures_loss,
+)
 from ranker.model import ShotRanker, normalised
 
 
@@ -60,6 +69,21 @@ def test_fault_loss_is_cross_entropy_over_what_is_known() -> None:
     expected = [math.log(1 + math.exp(-2.0)), math.log(1 + math.exp(-1.0)), math.log(1 + math.exp(-0.5))]
     assert float(fault_loss(told, known)) == pytest.approx(sum(expected) / 3, rel=1e-6)
     assert float(fault_loss(told, torch.full((2, 2), math.nan))) == 0.0
+
+
+def test_measures_are_weighed_by_what_they_are_of() -> None:
+    told = np.array([[0.1, 2.0, -1.0, 0.5, 1.4], [0.0, -0.7, 0.2, -2.0, 0.3]])
+    known = np.array([[0.3, 1.0, 0.0, 0.4, math.nan], [2.0, 0.0, math.nan, -2.1, 0.1]])
+
+    def straight(columns: list[int]) -> float:
+        off = np.abs(told - known)[:, columns]
+        off = off[np.isfinite(off)]
+        return float(np.mean(np.where(off < 0.3, off**2 / 2 / 0.3, off - 0.15)))
+
+    odds = [(x, y) for x, y in zip(told[:, 1:3].ravel(), known[:, 1:3].ravel(), strict=True) if y == y]
+    faults = np.mean([-math.log(1 / (1 + math.exp(-x if y else x))) for x, y in odds])
+    got = measures_loss(torch.tensor(told), torch.tensor(known), slice(1, 3), slice(3, 5), 5.0, 0.5)
+    assert float(got) == pytest.approx(straight([0, 3, 4]) + 0.5 * straight([3, 4]) + 5.0 * faults, rel=1e-6)
 
 
 def test_liking_loss_asks_of_every_step_whether_a_shot_is_above_it() -> None:

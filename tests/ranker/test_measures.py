@@ -96,6 +96,7 @@ def test_what_was_passed_over_counts_apart_from_what_was_spoilt(tmp_path: Path) 
 def test_curves_are_drawn_of_every_epoch_once(tmp_path: Path) -> None:
     lines = [
         {"epoch": e, "epochs": 3, "loss": 2.0 / n, "binary": 0.5, "class": 1.0, "contrast": None,
+         "hint": 0.3 / n, "order": 0.0,
          "held_out": {"professional": 0.5 + e / 10, "movement": None}}
         for n, e in enumerate((1, 2, 2, 3), 1)
     ]  # fmt: skip
@@ -103,5 +104,8 @@ def test_curves_are_drawn_of_every_epoch_once(tmp_path: Path) -> None:
     draw_curves(tmp_path)
     drawing = ElementTree.parse(tmp_path / "curves.svg").getroot()
     curves = [e.attrib["points"].split() for e in drawing.iter() if e.tag.endswith("polyline")]
-    assert [len(points) for points in curves] == [3, 3, 3, 3]
-    assert "professional 0.8" in "".join(drawing.itertext())
+    assert [len(points) for points in curves] == [3, 3, 3, 3, 3]
+    said = "".join(drawing.itertext())
+    assert "professional 0.8" in said
+    assert "hint" in said
+    assert "order" not in said  # what is left out of a training is no curve

@@ -14,7 +14,8 @@ from .compile import Device
 def dataset(
     out: Annotated[Path, typer.Argument(help="Folder for the training set; one begun is gone on with.")],
     clips: Annotated[
-        int, typer.Option(min=0, help="Clips to film with pictures, half of them good unless `--every`.")
+        int,
+        typer.Option(min=0, help="Clips to film with pictures, about half of them good unless `--every`."),
     ] = 10_000,
     seed: Annotated[int, typer.Option(min=0, help="Seed of the stories.")] = 0,
     size: Annotated[int, typer.Option(min=32, max=512, help="Side of the pictures, in pixels.")] = 224,

@@ -70,6 +70,12 @@ def _print(found: dict[str, Any]) -> None:
     for name, value in found["accuracy"].items():
         print(f"accuracy, {name:<14} {said(value)}")
     print(f"Spearman with float32    {said(found['spearman_fp32'])}")
+    print("by pictures alone, without what is known of drawn clips")
+    alone = found["by_pictures_alone"]
+    print(f"  {'AUC, against spoilt ones':<30} {said(alone['auc'])}")
+    for name, value in alone["accuracy"].items():
+        print(f"  {'accuracy, ' + name:<30} {said(value)}")
+    print(f"  {'Spearman with float32':<30} {said(alone['spearman_fp32'])}")
     print(f"picks among proposals    {found['picks']} among {found['proposals']}")
     for name, of in (("", found), (", as compiled", found.get("with_prior"))):
         if of is not None:

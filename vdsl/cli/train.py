@@ -18,6 +18,10 @@ if TYPE_CHECKING:
 
 #: The word for the weights that come with VDS.
 _SHIPPED = Path("shipped")
+#: Clips with pictures that are filmed for a recipe, and the share of the stories whose clips get some: guides
+#: are quickly made and learnt from, pictures are not.
+_FILMED = {"cpu": (3_000, 0.1), "heads": (5_000, 0.1)}
+_ELSE_FILMED = (10_000, 1.0)
 
 
 def train(
@@ -29,7 +33,23 @@ def train(
         Path | None,
         typer.Option(help="The training set; where there is none, it is filmed.", show_default="OUT/clips"),
     ] = None,
-    clips: Annotated[int, typer.Option(min=32, help="Clips to film, half of them good.")] = 10_000,
+    clips: Annotated[
+        int | None,
+        typer.Option(
+            min=32,
+            help="Clips to film with pictures, about half of them good.",
+            show_default="10000; 3000 for the recipe cpu, 5000 for heads",
+        ),
+    ] = None,
+    pictures: Annotated[
+        float | None,
+        typer.Option(
+            min=0.01,
+            max=1,
+            help="Share of the stories to learn from whose clips get pictures, as in `vdsc dataset`.",
+            show_default="1; 0.1 for the recipes cpu and heads",
+        ),
+    ] = None,
     recipe: Annotated[
         str,
         typer.Option(help="How to train: paper, cpu, heads, or a JSON file as `training` in config.json."),
@@ -63,7 +83,9 @@ def train(
     elif out is None:
         stop("name a folder to train in, or a storyboard with --picks", USAGE)
     else:
-        _train(out, data or out / "clips", clips, recipe, ablation, weights, seed, device, as_json)
+        usual = _FILMED.get(recipe, _ELSE_FILMED)
+        filmed = (usual[0] if clips is None else clips, usual[1] if pictures is None else pictures)
+        _train(out, data or out / "clips", filmed, recipe, ablation, weights, seed, device, as_json)
 
 
 def _learn(picks: list[Path], weights: Path | None, device: Device, as_json: bool) -> None:
@@ -83,7 +105,7 @@ def _learn(picks: list[Path], weights: Path | None, device: Device, as_json: boo
 def _train(
     out: Path,
     data: Path,
-    clips: int,
+    filmed: tuple[int, float],
     recipe: str,
     ablation: bool,
     start: Path | None,
@@ -115,7 +137,7 @@ def _train(
         check_start(config, start)  # before anything is filmed
         if data == out / "clips" or not (data / "dataset.json").exists():
             with Bars(console) as bars:
-                generate(data, clips, seed, device.value, bars)
+                generate(data, filmed[0], seed, device.value, bars, pictures=filmed[1])
         run: Callable[..., dict[str, Any]] = ablate if ablation else train_ranker
         measured = run(data, out, config, said, SHIPPED if start == _SHIPPED else start)
     if as_json:

@@ -38,6 +38,7 @@ def storyboard_document(build: Build) -> dict[str, Any]:
         "source": board.source_name,
         "script": script_digest(board),
         "judge": build.judge,
+        "taste": build.taste,
         "made_with": dict(build.made_with),
         "draft": build.draft,
         "characters": [c.name for c in board.characters],

@@ -168,6 +168,7 @@ class Build:
 
     continuity: what the cuts between the first takes break, in order; edited: whether the first takes were
     chosen for the sequence; trades: what was given up for it
+    taste: digest of what a writer's choices taught the ranker, None where it ranked without
     made_with: versions that proposals and pictures go by, as (name, version)
     draft: whether some takes are stills alone, put in order by geometry, until their films are made
     waiting: how many shots have takes that are still to be filmed, and not shown yet
@@ -186,6 +187,7 @@ class Build:
     waiting: int = 0
     grounds: tuple[Ground, ...] = ()
     arrows: bool = True
+    taste: str | None = None
 
     def into(self, shot: str) -> tuple[CutFinding, ...]:
         """What the cut into a shot breaks."""

@@ -52,7 +52,7 @@ from .progress import Progress, Silence, StageClock
 from .project import project_of
 from .script import Checked, ScriptError, load_storyboard
 from .shooting import UNITS, Judged, Kept, Run, Shooting
-from .tasting import taste_of
+from .tasting import digest_of, taste_of
 from .turns import one_at_a_time
 
 #: Proposals looked at to get ready.
@@ -272,6 +272,7 @@ class _Filming:
             waiting,
             grounds=self._grounds(),
             arrows=run.options.arrows,
+            taste=digest_of(run.options.taste) if run.options.taste else None,
         )
 
     def _judged(self, line: StoryLine, shot: Shot) -> tuple[Shooting, Judged]:

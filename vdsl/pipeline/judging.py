@@ -37,6 +37,8 @@ BY_PICTURES = Glance((1, 6), True, 0.25, 16)
 #: Guides of all frames. They are drawn in a fraction of the time, and put proposals nearer to the order of
 #: full looks (Spearman 0.995, against 0.977 by the pictures of two frames).
 BY_GUIDES = Glance(tuple(range(SEGMENTS)), False, 0.15, 12)
+#: The same where a taste counts, which goes by what is in pictures: it may prefer what comes behind the best.
+BEFORE_TASTE = Glance(BY_GUIDES.frames, False, 0.25, 20)
 
 
 class Judge(Protocol):
@@ -89,6 +91,12 @@ _PRIOR_MIDDLE = 0.75
 _TEMPERATURE = 15.0
 
 
+def log_odds(score: float) -> float:
+    """What puts takes in order, of a discriminator's score: its margin, the prior and what a taste adds."""
+    score = min(max(score, 1e-300), 1.0 - 1e-15)
+    return _TEMPERATURE * math.log(score / (1.0 - score))
+
+
 def prior(measures: Mapping[str, float]) -> float:
     """What the geometry adds to the discriminator's log odds, and its faults take off."""
     wrong = sum(float(found) for found in gravity(measures).values())
@@ -123,24 +131,27 @@ class DiscriminatorJudge:
 
     @property
     def glances(self) -> Glance:
-        """By guides where that is enough: taste goes by what is in pictures."""
-        return BY_GUIDES if self._ranker.judges_guides and self._taste is None else BY_PICTURES
+        """By guides where the weights were taught by such alone."""
+        if not self._ranker.judges_guides:
+            return BY_PICTURES
+        return BY_GUIDES if self._taste is None else BEFORE_TASTE
 
     def glance(self, cameras: tuple[CameraProposal, ...], seen: Seen) -> NDArray[np.float64]:
         if self.glances.pictures:
             return self._scored(cameras, self._ranker.glance(seen.frames, self.glances.frames, seen.guides))
         if seen.guides is None:
             raise ValueError("a glance by guides needs some")
-        return self._scored(cameras, self._ranker.by_guides(seen.guides))
+        return self._scored(cameras, self._ranker.by_guides(seen.guides), tasted=False)
 
-    def _scored(self, cameras: tuple[CameraProposal, ...], seen: Scores) -> NDArray[np.float64]:
+    def _scored(
+        self, cameras: tuple[CameraProposal, ...], seen: Scores, tasted: bool = True
+    ) -> NDArray[np.float64]:
         """From the logit: p_b itself runs out of digits near 1."""
         logit = seen.margin.astype(np.float64)
-        if self._taste is not None:
+        if self._taste is not None and tasted:
             logit += self._taste.adds(seen.feature)
         priors = np.array([prior(c.measures) for c in cameras])
         return np.asarray(1.0 / (1.0 + np.exp(-(logit + priors) / _TEMPERATURE)))
 
     def logit(self, camera: CameraProposal, score: float) -> float | None:
-        score = min(max(score, 1e-300), 1.0 - 1e-15)
-        return _TEMPERATURE * math.log(score / (1.0 - score)) - prior(camera.measures)
+        return log_odds(score) - prior(camera.measures)

@@ -27,6 +27,7 @@ from runtime.video import VideoError
 from ..emit.video import take_paths
 from ..lang.words import CAMERA_WORDS
 from .filming import SEGMENTS, segment_frames
+from .judging import DiscriminatorJudge, log_odds
 from .labels import WORDS, classes
 from .lock import lock_path, read_lock
 
@@ -39,13 +40,16 @@ _TEST_SHARE = 0.15
 class Preference:
     """A shot whose take somebody chose. frames: uint8 [T, 8, S, S, 3] of its takes; chosen: which of them
 
-    words: movement, size and angle of every take
+    words: movement, size and angle of every take; odds: log odds [T] by which the build put them in order,
+    zeros where it had not asked the ranker; taste: digest of what it had asked beside the ranker
     """
 
     shot: str
     frames: NDArray[np.uint8]
     chosen: int
     words: tuple[tuple[str, str, str], ...]
+    odds: NDArray[np.float64]
+    taste: str | None
 
 
 def clip_of(path: Path, size: int = 224) -> NDArray[np.uint8]:
@@ -160,7 +164,9 @@ def preferences(script: Path, size: int = 224, build: Path | None = None) -> lis
     try:
         document = json.loads((folder / "storyboard.json").read_text("utf-8"))
         shots: dict[str, dict[str, Any]] = {s["id"]: s for s in document["shots"]}
-        found = [_preference(folder, shots[c.shot], c.key, size) for c in lock.choices if c.shot in shots]
+        found = [
+            _preference(folder, document, shots[c.shot], c.key, size) for c in lock.choices if c.shot in shots
+        ]
     except FileNotFoundError as error:
         raise RankerError(f"{folder}: has no films of {script}; compile it first") from error
     except (ValueError, KeyError, TypeError) as error:
@@ -168,14 +174,18 @@ def preferences(script: Path, size: int = 224, build: Path | None = None) -> lis
     return [f for f in found if f is not None]
 
 
-def _preference(folder: Path, entry: dict[str, Any], key: str, size: int) -> Preference | None:
+def _preference(
+    folder: Path, document: dict[str, Any], entry: dict[str, Any], key: str, size: int
+) -> Preference | None:
     takes = entry["takes"]
     keys = [take["key"] for take in takes]
     if key not in keys or len(takes) < 2:
         return None
     frames = np.stack([clip_of(take_paths(folder, entry["id"], take["rank"])[0], size) for take in takes])
     words = tuple((str(t["movement"]), str(t["scale"]), str(t["angle"])) for t in takes)
-    return Preference(entry["id"], frames, keys.index(key), words)
+    ranked = document["judge"] == DiscriminatorJudge.name
+    odds = np.array([log_odds(float(take["score"])) if ranked else 0.0 for take in takes])
+    return Preference(entry["id"], frames, keys.index(key), words, odds, document.get("taste"))
 
 
 def _build_of(script: Path) -> Path:

@@ -1,12 +1,15 @@
 """What a writer's choices teach the discriminator, kept in the project as ``vds.taste``.
 
-Assumes scripts with a lock and a build that holds the chosen takes and the others. Guarantees that without
-such a file nothing is other than without choices.
+Assumes scripts with a lock and a build that holds the chosen takes and the others. What is learnt is why
+somebody chose another take than ``compile`` would have: it starts from the scores of the build. Guarantees
+that without such a file nothing is other than without choices.
 """
 
 from __future__ import annotations
 
+import hashlib
 from collections.abc import Sequence
+from contextlib import suppress
 from pathlib import Path
 
 from .project import NAME as PROJECT
@@ -45,21 +48,34 @@ def learn_taste(
     does not read, OSError.
     """
     # Only now: `compile` asks where a taste is before it needs torch.
+    from ranker.errors import RankerError
     from ranker.infer import Ranker
-    from ranker.taste import Choice, learn, save_taste
+    from ranker.taste import Choice, learn, load_taste, save_taste
     from ranker.weights import load_card
 
     from .filming import SEGMENTS
     from .realclips import preferences
 
     found = []
-    ranker = Ranker.load(weights, device if device in ("cpu", "cuda") else "auto")
+    ranker, digest = Ranker.load(weights, device if device in ("cpu", "cuda") else "auto"), None
     ranker.fits(SEGMENTS)
+    card, path = load_card(weights), home_of(scripts[0])
+    with suppress(RankerError):  # none yet, or another's: builds were not put in order by such
+        before, digest = load_taste(path, card.sha256), digest_of(path)
     for script in scripts:
         for liked in preferences(script, ranker.config.size):
-            scores = ranker.score(liked.frames)
-            found.append(Choice(scores.feature, scores.margin, liked.chosen))
-    taste = learn(found, load_card(weights).sha256)
-    path = home_of(scripts[0])
+            feature = ranker.score(liked.frames).feature
+            # What was learnt before is learnt anew, not on top.
+            again = before.adds(feature) if digest is not None and liked.taste == digest else 0.0
+            found.append(Choice(feature, liked.odds - again, liked.chosen))
+    taste = learn(found, card.sha256)
     save_taste(path, taste)
     return path, taste.choices
+
+
+def digest_of(path: Path) -> str:
+    """By which a build says which taste was asked; empty for a file that is not there."""
+    try:
+        return hashlib.sha256(path.read_bytes()).hexdigest()[:12]
+    except OSError:
+        return ""

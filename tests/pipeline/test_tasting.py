@@ -1,0 +1,116 @@
+"""From a take that somebody chooses to another order of takes, through the command line's own doors."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from proposed_shots import proposed
+from typer.testing import CliRunner
+
+from ranker.infer import Ranker
+from ranker.taste import Taste, load_taste, save_taste
+from ranker.weights import load_card
+from vdsl.cli import app
+from vdsl.pipeline import cache as cache_module
+from vdsl.pipeline.filming import Camerawork
+from vdsl.pipeline.guides import about_of
+from vdsl.pipeline.judging import DiscriminatorJudge, log_odds
+from vdsl.pipeline.realclips import preferences
+from vdsl.pipeline.tasting import digest_of
+
+SCRIPT = """\
+size 128x72
+proposals 24
+takes 3
+character anna = woman(top crimson)
+scene room = apartment.living
+anna at door
+(anna wave)  / (static medium) 0.5s
+(anna nod)  / (static medium) 0.5s
+"""
+
+runner = CliRunner()
+
+
+def run(*arguments: str | Path) -> str:
+    result = runner.invoke(app, [str(a) for a in arguments], catch_exceptions=False)
+    assert result.exit_code == 0, result.output
+    return result.stdout
+
+
+def odds_of(build: Path) -> dict[str, dict[str, float]]:
+    """Log odds of the takes of every shot, by key."""
+    document = json.loads((build / "storyboard.json").read_text("utf-8"))
+    return {s["id"]: {t["key"]: log_odds(t["score"]) for t in s["takes"]} for s in document["shots"]}
+
+
+def document_of(build: Path) -> dict[str, Any]:
+    found: dict[str, Any] = json.loads((build / "storyboard.json").read_text("utf-8"))
+    return found
+
+
+@pytest.mark.slow
+def test_choices_change_the_order_of_takes_and_are_forgotten_with_their_file(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(cache_module, "results_folder", lambda: tmp_path / "kept")
+    monkeypatch.chdir(tmp_path)
+    story, build = tmp_path / "story.vds", tmp_path / "build" / "story"
+    story.write_text(SCRIPT, "utf-8")
+    run("compile", story)
+    before = odds_of(build)
+    assert document_of(build)["taste"] is None
+    chosen = {shot: list(takes)[-1] for shot, takes in before.items()}
+    for shot, key in chosen.items():
+        run("pick", story, shot, key)
+    for liked in preferences(story):
+        assert liked.odds.tolist() == pytest.approx(list(before[liked.shot].values()))
+
+    told = json.loads(run("train", "--picks", story, "--json"))
+    taste = tmp_path / "vds.taste"
+    assert told == {"taste": str(taste), "choices": 2}
+    learnt = load_taste(taste, load_card().sha256)
+    (tmp_path / "story.vds.lock").unlink()  # so that its order is the judge's
+    run("compile", story)
+    assert document_of(build)["taste"] == digest_of(taste)
+    after = odds_of(build)
+    for shot, key in chosen.items():
+        assert key in after[shot]
+        for other in after[shot].keys() & before[shot].keys() - {key}:
+            was, now = (odds[shot][key] - odds[shot][other] for odds in (before, after))
+            assert now > was + 0.1
+
+    for shot, key in chosen.items():  # what was learnt before is learnt anew, not on top
+        run("pick", story, shot, key)
+    run("train", "--picks", story)
+    anew = load_taste(taste, load_card().sha256)
+    assert np.linalg.norm(anew.head - learnt.head) < 0.02 * np.linalg.norm(learnt.head)
+
+    taste.unlink()
+    (tmp_path / "story.vds.lock").unlink()
+    run("compile", story, "-o", tmp_path / "third")
+    assert odds_of(tmp_path / "third") == before
+
+
+def test_a_taste_counts_in_full_looks_alone(tmp_path: Path) -> None:
+    """It goes by what is in pictures, and at a glance there are none."""
+    act, grid = proposed(SCRIPT.rpartition("\n(")[0] + "\n")
+    cameras, about = grid.cameras[:6], [about_of(act.line.shots[0], grid, act.filming, act.staged)] * 6
+    seen = Camerawork("cpu").judge_frames(
+        act.staged, act.line.shots[0].style, grid.story, cameras, about=about
+    )
+    feature = Ranker.load(device="cpu").score(seen.frames, seen.guides).feature
+    unit = feature / np.linalg.norm(feature, axis=1, keepdims=True)
+    likes, middle = 50 * (unit[3] - unit.mean(0)), unit.mean(0)
+    save_taste(tmp_path / "vds.taste", Taste(likes, middle, load_card().sha256, 1))
+    plain, tasting = DiscriminatorJudge(None, "cpu"), DiscriminatorJudge(None, "cpu", tmp_path / "vds.taste")
+    np.testing.assert_array_equal(plain.glance(cameras, seen), tasting.glance(cameras, seen))
+    was, now = (
+        np.array([log_odds(score) for score in judge.scores(cameras, seen)]) for judge in (plain, tasting)
+    )
+    assert (now - was).argmax() == 3
+    assert 0.5 < np.abs(now - was).max() <= 6.001

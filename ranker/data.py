@@ -465,9 +465,16 @@ def made_of(folder: str | Path) -> dict[str, Any] | None:
 
 def _difference(there: Any, asked: dict[str, Any]) -> str:
     """In what a training set is of another kind than is asked for."""
-    flat = [{**d, **(d.pop("made", None) or {})} if isinstance(d, dict) else {} for d in (there, dict(asked))]
-    keys = [k for k in dict.fromkeys([*flat[0], *flat[1]]) if flat[0].get(k) != flat[1].get(k)]
-    return ", ".join(f"{k} {flat[0].get(k, 'unsaid')} there, {flat[1].get(k, 'unsaid')} here" for k in keys)
+    one, other = (_flat(header) for header in (there, asked))
+    keys = [key for key in (one | other) if one.get(key) != other.get(key)]
+    return ", ".join(f"{key} {one.get(key, 'unsaid')} there, {other.get(key, 'unsaid')} here" for key in keys)
+
+
+def _flat(header: Any) -> dict[str, Any]:
+    """A set's header with how it is made beside the rest; empty for what is none."""
+    told = dict(header) if isinstance(header, dict) else {}
+    how = told.pop("made", None)
+    return told | how if isinstance(how, dict) else told
 
 
 def _replace(path: Path, content: bytes) -> None:

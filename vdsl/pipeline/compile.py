@@ -260,10 +260,12 @@ class _Filming:
             rejected = judged.rejected_for(order)
             film.append(self._built(line, shot, judged, takes, rejected, transition))
             joined = line if takes else joined
+        by_lines = run.options.rank == "geometry"
+        taste = None if by_lines else run.options.taste
         return Build(
             board,
             tuple(film),
-            GeometryJudge.name if run.options.rank == "geometry" else DiscriminatorJudge.name,
+            GeometryJudge.name if by_lines else DiscriminatorJudge.name,
             cut_findings(reel.slots, [0] * len(reel.slots)),
             run.options.edit,
             plan.trades if plan else (),
@@ -272,7 +274,7 @@ class _Filming:
             waiting,
             grounds=self._grounds(),
             arrows=run.options.arrows,
-            taste=digest_of(run.options.taste) if run.options.taste else None,
+            taste=digest_of(taste) if taste is not None else None,
         )
 
     def _judged(self, line: StoryLine, shot: Shot) -> tuple[Shooting, Judged]:

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 from proposed_shots import proposed
+from tastes import some_taste
 
 from ranker.evaluate import spearman
-from ranker.taste import Taste, save_taste
-from ranker.weights import load_card
+from ranker.taste import save_taste
 from vdsl.pipeline import cache as cache_module
 from vdsl.pipeline import glance
 from vdsl.pipeline.compile import Result, Workshop, compile_file
@@ -214,8 +214,7 @@ def test_the_discriminator_glances_by_guides_and_looks_at_more_with_a_taste(tmp_
     plain = DiscriminatorJudge(None, "cpu")
     assert plain.glances == BY_GUIDES
     taste = tmp_path / "taste.json"
-    nothing = np.zeros(2048, np.float32)
-    save_taste(taste, Taste(nothing, nothing, load_card().sha256, 1))
+    save_taste(taste, some_taste())
     assert DiscriminatorJudge(None, "cpu", taste).glances == BEFORE_TASTE
     assert second_looks(80, BEFORE_TASTE) == 20
 

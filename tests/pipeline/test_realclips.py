@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 
 import numpy as np
 import pytest
+from tastes import some_taste
 
 from ranker.data import Dataset, ShardWriter
 from ranker.errors import RankerError
-from ranker.taste import Taste, save_taste
+from ranker.taste import save_taste
 from runtime.video import VideoError, write_video
+from vdsl.cinema.traits import TRAITS
 from vdsl.pipeline.dataset import made
 from vdsl.pipeline.judging import log_odds
 from vdsl.pipeline.keys import judge_digest
@@ -85,6 +88,9 @@ def test_real_clips_go_into_a_set_of_any_kind_and_another_size_is_told(tmp_path:
     assert Dataset(other).made == kind  # so that filming goes on with it
 
 
+FILES = {"video": "mp4", "track": "json"}
+
+
 def script_with_choice(folder: Path) -> Path:
     """A storyboard with a chosen take, and what matters of its build."""
     script, shot = folder / "tale.vds", "kitchen-anna-wave"
@@ -96,8 +102,14 @@ def script_with_choice(folder: Path) -> Path:
     takes = []
     for rank, key in enumerate(keys, 1):
         film(folder / "build" / "tale" / "shots" / shot / f"take-{rank}.mp4", blue=60 * rank)
+        files = {name: f"shots/{shot}/take-{rank}.{end}" for name, end in FILES.items()}
         words = {"movement": "push", "scale": "medium", "angle": "high-angle"}
-        takes.append({"rank": rank, "key": key, "score": 0.9 - 0.1 * rank, **words})
+        measures = {"elevation": 10.0 * rank, "speed": 0.5}
+        takes.append(
+            {"rank": rank, "key": key, "score": 0.9 - 0.1 * rank, **words, **files, "measures": measures}
+        )
+        track = {"camera": {"focal_mm": [35.0, 50.0]}}
+        (folder / "build" / "tale" / files["track"]).write_text(json.dumps(track))
     document = {"judge": "ranker", "taste": None, "shots": [{"id": shot, "takes": takes}]}
     (folder / "build" / "tale" / "storyboard.json").write_text(json.dumps(document))
     return script
@@ -110,6 +122,10 @@ def test_choices_are_read_with_the_takes_they_were_among(tmp_path: Path) -> None
     assert liked.chosen == 1
     assert abs(int(liked.frames[1, 0, 8, 8, 2]) - 120) < 8
     assert liked.odds == pytest.approx([log_odds(0.8), log_odds(0.7), log_odds(0.6)])
+    traits = dict(zip(TRAITS, liked.traits.T, strict=True))
+    assert traits["elevation"] == pytest.approx([1, 2, 3])
+    assert (traits["push"].tolist(), traits["pan"].tolist()) == ([1.0] * 3, [0.0] * 3)
+    assert traits["focal"] == pytest.approx(np.full(3, np.log(42.5) / TRAITS["focal"].step))
     assert add_picks(tmp_path / "data", [script], made(0), 32) == 1
     assert add_picks(tmp_path / "data", [script], made(0), 32) == 0
     (label,) = Dataset(tmp_path / "data").labels
@@ -121,6 +137,10 @@ def test_choices_are_read_with_the_takes_they_were_among(tmp_path: Path) -> None
 def test_choices_without_a_build_are_told(tmp_path: Path) -> None:
     script = script_with_choice(tmp_path)
     document = tmp_path / "build" / "tale" / "storyboard.json"
+    whole = document.read_text()
+    document.write_text(re.sub(r'"video": "[^"]*"', '"video": null', whole))
+    with pytest.raises(RankerError, match=r"a draft.*compile it whole"):
+        preferences(script)
     document.write_text("{}")
     with pytest.raises(RankerError, match="compile"):
         preferences(script)
@@ -136,8 +156,8 @@ def test_a_taste_belongs_to_its_project_and_counts_in_what_is_kept(tmp_path: Pat
     assert taste_of(script) is None
     assert home_of(script) == tmp_path / "a" / "vds.taste"
     assert home_of(tmp_path / "tale.vds") == tmp_path / "vds.taste"
-    save_taste(tmp_path / "vds.taste", Taste(np.ones(4, np.float32), np.zeros(4, np.float32), "0" * 64, 1))
+    save_taste(tmp_path / "vds.taste", some_taste())
     assert taste_of(script) is None  # another project's
-    save_taste(home_of(script), Taste(np.ones(4, np.float32), np.zeros(4, np.float32), "0" * 64, 1))
+    save_taste(home_of(script), some_taste())
     assert taste_of(script) == home_of(script)
     assert judge_digest(Options(taste=home_of(script))) != judge_digest(Options())

@@ -9,11 +9,13 @@ from typing import Any
 import numpy as np
 import pytest
 from proposed_shots import proposed
+from tastes import some_taste
 from typer.testing import CliRunner
 
 from ranker.infer import Ranker
-from ranker.taste import Taste, load_taste, save_taste
+from ranker.taste import load_taste, save_taste
 from ranker.weights import load_card
+from vdsl.cinema.traits import TRAITS
 from vdsl.cli import app
 from vdsl.pipeline import cache as cache_module
 from vdsl.pipeline.filming import Camerawork
@@ -72,8 +74,8 @@ def test_choices_change_the_order_of_takes_and_are_forgotten_with_their_file(
 
     told = json.loads(run("train", "--picks", story, "--json"))
     taste = tmp_path / "vds.taste"
-    assert told == {"taste": str(taste), "choices": 2}
-    learnt = load_taste(taste, load_card().sha256)
+    assert (told["taste"], told["choices"], list(told["likes"])) == (str(taste), 2, list(TRAITS))
+    learnt = load_taste(taste, tuple(TRAITS), load_card().sha256)
     (tmp_path / "story.vds.lock").unlink()  # so that its order is the judge's
     run("compile", story)
     assert document_of(build)["taste"] == digest_of(taste)
@@ -87,8 +89,9 @@ def test_choices_change_the_order_of_takes_and_are_forgotten_with_their_file(
     for shot, key in chosen.items():  # what was learnt before is learnt anew, not on top
         run("pick", story, shot, key)
     run("train", "--picks", story)
-    anew = load_taste(taste, load_card().sha256)
-    assert np.linalg.norm(anew.head - learnt.head) < 0.02 * np.linalg.norm(learnt.head)
+    anew = load_taste(taste, tuple(TRAITS), load_card().sha256)
+    for was, now in ((learnt.head, anew.head), (learnt.likes, anew.likes)):
+        assert np.linalg.norm(now - was) < 0.02 * np.linalg.norm(was)
 
     taste.unlink()
     (tmp_path / "story.vds.lock").unlink()
@@ -96,8 +99,8 @@ def test_choices_change_the_order_of_takes_and_are_forgotten_with_their_file(
     assert odds_of(tmp_path / "third") == before
 
 
-def test_a_taste_counts_in_full_looks_alone(tmp_path: Path) -> None:
-    """It goes by what is in pictures, and at a glance there are none."""
+def test_what_a_taste_has_of_pictures_counts_in_full_looks_alone(tmp_path: Path) -> None:
+    """At a glance there are none."""
     act, grid = proposed(SCRIPT.rpartition("\n(")[0] + "\n")
     cameras, about = grid.cameras[:6], [about_of(act.line.shots[0], grid, act.filming, act.staged)] * 6
     seen = Camerawork("cpu").judge_frames(
@@ -105,12 +108,28 @@ def test_a_taste_counts_in_full_looks_alone(tmp_path: Path) -> None:
     )
     feature = Ranker.load(device="cpu").score(seen.frames, seen.guides).feature
     unit = feature / np.linalg.norm(feature, axis=1, keepdims=True)
-    likes, middle = 50 * (unit[3] - unit.mean(0)), unit.mean(0)
-    save_taste(tmp_path / "vds.taste", Taste(likes, middle, load_card().sha256, 1))
+    save_taste(tmp_path / "vds.taste", some_taste(50 * (unit[3] - unit.mean(0)), unit.mean(0)))
     plain, tasting = DiscriminatorJudge(None, "cpu"), DiscriminatorJudge(None, "cpu", tmp_path / "vds.taste")
     np.testing.assert_array_equal(plain.glance(cameras, seen), tasting.glance(cameras, seen))
     was, now = (
         np.array([log_odds(score) for score in judge.scores(cameras, seen)]) for judge in (plain, tasting)
     )
     assert (now - was).argmax() == 3
-    assert 0.5 < np.abs(now - was).max() <= 6.001
+    assert 0.5 < np.abs(now - was).max() <= 12.001
+
+
+def test_what_a_taste_has_of_traits_counts_at_a_glance_too(tmp_path: Path) -> None:
+    act, grid = proposed(SCRIPT.rpartition("\n(")[0] + "\n")
+    cameras, about = grid.cameras[:6], [about_of(act.line.shots[0], grid, act.filming, act.staged)] * 6
+    seen = Camerawork("cpu").judge_frames(
+        act.staged, act.line.shots[0].style, grid.story, cameras, about=about
+    )
+    save_taste(tmp_path / "vds.taste", some_taste(likes={"height": -2.0}))
+    plain, tasting = DiscriminatorJudge(None, "cpu"), DiscriminatorJudge(None, "cpu", tmp_path / "vds.taste")
+    steps = np.array([camera.measures["height"] for camera in cameras]) / TRAITS["height"].step
+    for judged in ("glance", "scores"):
+        was, now = (
+            np.array([log_odds(score) for score in getattr(judge, judged)(cameras, seen)])
+            for judge in (plain, tasting)
+        )
+        np.testing.assert_allclose(now - was, 12.0 * np.tanh(-2.0 * steps / 12.0), atol=1e-3)

@@ -94,11 +94,13 @@ def _learn(picks: list[Path], weights: Path | None, device: Device, as_json: boo
     from .failures import failures_told
 
     with failures_told(picks[0]):
-        path, count = learn_taste(picks, weights, device.value)
+        learnt = learn_taste(picks, weights, device.value)
+    count = f"{learnt.choices} choice{'s' if learnt.choices > 1 else ''}"
+    likes = f": more of {', '.join(learnt.words)}" if learnt.words else ""
     print(
-        json.dumps({"taste": str(path), "choices": count})
+        json.dumps({"taste": str(learnt.path), "choices": learnt.choices, "likes": learnt.likes})
         if as_json
-        else f"{path}: learnt from {count} choices"
+        else f"{learnt.path}: learnt from {count}{likes}"
     )
 
 

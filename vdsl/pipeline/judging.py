@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from ..cinema.flaws import gravity
 from ..cinema.score import FLAW, PRIOR, geometry_score
+from ..cinema.traits import TRAITS, traits_of
 from ..propose.types import CameraProposal
 from .filming import JUDGE_SIZE, SEGMENTS, Seen
 
@@ -37,7 +38,7 @@ BY_PICTURES = Glance((1, 6), True, 0.25, 16)
 #: Guides of all frames. They are drawn in a fraction of the time, and put proposals nearer to the order of
 #: full looks (Spearman 0.995, against 0.977 by the pictures of two frames).
 BY_GUIDES = Glance(tuple(range(SEGMENTS)), False, 0.15, 12)
-#: The same where a taste counts, which goes by what is in pictures: it may prefer what comes behind the best.
+#: The same where a taste counts: it goes by what is in pictures too, and may prefer what comes behind.
 BEFORE_TASTE = Glance(BY_GUIDES.frames, False, 0.25, 20)
 
 
@@ -122,7 +123,9 @@ class DiscriminatorJudge:
 
         self._ranker = Ranker.load(weights, device="cuda" if device == "cuda" else "cpu")
         self._ranker.fits(SEGMENTS, JUDGE_SIZE[0])
-        self._taste = load_taste(taste, load_card(weights).sha256) if taste is not None else None
+        self._taste = (
+            load_taste(taste, tuple(TRAITS), load_card(weights).sha256) if taste is not None else None
+        )
 
     def scores(self, cameras: tuple[CameraProposal, ...], seen: Seen | None) -> NDArray[np.float64]:
         if seen is None:
@@ -141,17 +144,22 @@ class DiscriminatorJudge:
             return self._scored(cameras, self._ranker.glance(seen.frames, self.glances.frames, seen.guides))
         if seen.guides is None:
             raise ValueError("a glance by guides needs some")
-        return self._scored(cameras, self._ranker.by_guides(seen.guides), tasted=False)
+        return self._scored(cameras, self._ranker.by_guides(seen.guides), pictures=False)
 
     def _scored(
-        self, cameras: tuple[CameraProposal, ...], seen: Scores, tasted: bool = True
+        self, cameras: tuple[CameraProposal, ...], seen: Scores, pictures: bool = True
     ) -> NDArray[np.float64]:
-        """From the logit: p_b itself runs out of digits near 1."""
+        """From the logit: p_b itself runs out of digits near 1. pictures: whether some were looked at"""
         logit = seen.margin.astype(np.float64)
-        if self._taste is not None and tasted:
-            logit += self._taste.adds(seen.feature)
+        if self._taste is not None:
+            traits = np.stack([_traits(c) for c in cameras])
+            logit += self._taste.adds(traits, seen.feature if pictures else None)
         priors = np.array([prior(c.measures) for c in cameras])
         return np.asarray(1.0 / (1.0 + np.exp(-(logit + priors) / _TEMPERATURE)))
 
     def logit(self, camera: CameraProposal, score: float) -> float | None:
         return log_odds(score) - prior(camera.measures)
+
+
+def _traits(camera: CameraProposal) -> NDArray[np.float64]:
+    return traits_of(camera.measures, camera.movement, camera.scale, camera.track.focal)

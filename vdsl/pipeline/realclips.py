@@ -24,6 +24,7 @@ from ranker.data import ShardWriter, made_of
 from ranker.errors import RankerError
 from runtime.video import VideoError
 
+from ..cinema.traits import traits_of
 from ..emit.video import take_paths
 from ..lang.words import CAMERA_WORDS
 from .filming import SEGMENTS, segment_frames
@@ -40,14 +41,16 @@ _TEST_SHARE = 0.15
 class Preference:
     """A shot whose take somebody chose. frames: uint8 [T, 8, S, S, 3] of its takes; chosen: which of them
 
-    words: movement, size and angle of every take; odds: log odds [T] by which the build put them in order,
-    zeros where it had not asked the ranker; taste: digest of what it had asked beside the ranker
+    words: movement, size and angle of every take; traits: theirs [T, M] (:mod:`vdsl.cinema.traits`)
+    odds: log odds [T] by which the build put them in order, zeros where it had not asked the ranker
+    taste: digest of what it had asked beside the ranker
     """
 
     shot: str
     frames: NDArray[np.uint8]
     chosen: int
     words: tuple[tuple[str, str, str], ...]
+    traits: NDArray[np.float64]
     odds: NDArray[np.float64]
     taste: str | None
 
@@ -165,7 +168,7 @@ def preferences(script: Path, size: int = 224, build: Path | None = None) -> lis
         document = json.loads((folder / "storyboard.json").read_text("utf-8"))
         shots: dict[str, dict[str, Any]] = {s["id"]: s for s in document["shots"]}
         found = [
-            _preference(folder, document, shots[c.shot], c.key, size) for c in lock.choices if c.shot in shots
+            preference(folder, document, shots[c.shot], c.key, size) for c in lock.choices if c.shot in shots
         ]
     except FileNotFoundError as error:
         raise RankerError(f"{folder}: has no films of {script}; compile it first") from error
@@ -174,18 +177,26 @@ def preferences(script: Path, size: int = 224, build: Path | None = None) -> lis
     return [f for f in found if f is not None]
 
 
-def _preference(
+def preference(
     folder: Path, document: dict[str, Any], entry: dict[str, Any], key: str, size: int
 ) -> Preference | None:
     takes = entry["takes"]
     keys = [take["key"] for take in takes]
     if key not in keys or len(takes) < 2:
         return None
+    if any(take["video"] is None for take in takes):
+        raise RankerError(f"{folder}: is a draft, which has no films to learn from; compile it whole first")
     frames = np.stack([clip_of(take_paths(folder, entry["id"], take["rank"])[0], size) for take in takes])
     words = tuple((str(t["movement"]), str(t["scale"]), str(t["angle"])) for t in takes)
+    traits = np.stack([_traits(folder, take) for take in takes])
     ranked = document["judge"] == DiscriminatorJudge.name
     odds = np.array([log_odds(float(take["score"])) if ranked else 0.0 for take in takes])
-    return Preference(entry["id"], frames, keys.index(key), words, odds, document.get("taste"))
+    return Preference(entry["id"], frames, keys.index(key), words, traits, odds, document.get("taste"))
+
+
+def _traits(folder: Path, take: dict[str, Any]) -> NDArray[np.float64]:
+    focal = json.loads((folder / take["track"]).read_text("utf-8"))["camera"]["focal_mm"]
+    return traits_of(take["measures"], take["movement"], take["scale"], np.array(focal))
 
 
 def _build_of(script: Path) -> Path:

@@ -11,10 +11,14 @@ import hashlib
 from collections.abc import Sequence
 from contextlib import suppress
 from pathlib import Path
+from typing import NamedTuple
 
+from ..cinema.traits import TRAITS
 from .project import NAME as PROJECT
 
 NAME = "vds.taste"
+#: How many traits are told at most, and how much of one, in log odds a step, is worth telling.
+_TOLD, _COUNTS = 4, 0.5
 
 
 def taste_of(script: Path) -> Path | None:
@@ -39,10 +43,26 @@ def home_of(script: Path) -> Path:
     return folder / NAME
 
 
-def learn_taste(
-    scripts: Sequence[Path], weights: Path | None = None, device: str = "auto"
-) -> tuple[Path, int]:
-    """Learn from the takes chosen for scripts; returns the file and from how many shots.
+class Learnt(NamedTuple):
+    """path: the file it is kept in; choices: from how many shots
+
+    likes: log odds that a step of each trait adds, by its name
+    """
+
+    path: Path
+    choices: int
+    likes: dict[str, float]
+
+    @property
+    def words(self) -> tuple[str, ...]:
+        """What counts most of it, in words; nothing where all counts little."""
+        most = sorted(self.likes, key=lambda name: -abs(self.likes[name]))[:_TOLD]
+        some = [name for name in most if abs(self.likes[name]) >= _COUNTS]
+        return tuple(TRAITS[name].more if self.likes[name] > 0 else TRAITS[name].less for name in some)
+
+
+def learn_taste(scripts: Sequence[Path], weights: Path | None = None, device: str = "auto") -> Learnt:
+    """Learn from the takes chosen for scripts.
 
     Raises :class:`ranker.RankerError` where nothing is chosen or no build has it, ScriptError for a lock that
     does not read, OSError.
@@ -59,18 +79,20 @@ def learn_taste(
     found = []
     ranker, digest = Ranker.load(weights, device if device in ("cpu", "cuda") else "auto"), None
     ranker.fits(SEGMENTS)
-    card, path = load_card(weights), home_of(scripts[0])
+    card, path, names = load_card(weights), home_of(scripts[0]), tuple(TRAITS)
     with suppress(RankerError):  # none yet, or another's: builds were not put in order by such
-        before, digest = load_taste(path, card.sha256), digest_of(path)
+        before, digest = load_taste(path, names, card.sha256), digest_of(path)
     for script in scripts:
         for liked in preferences(script, ranker.config.size):
             feature = ranker.score(liked.frames).feature
             # What was learnt before is learnt anew, not on top.
-            again = before.adds(feature) if digest is not None and liked.taste == digest else 0.0
-            found.append(Choice(feature, liked.odds - again, liked.chosen))
-    taste = learn(found, card.sha256)
+            known = digest is not None and liked.taste == digest
+            again = before.adds(liked.traits, feature) if known else 0.0
+            found.append(Choice(feature, liked.traits, liked.odds - again, liked.chosen))
+    taste = learn(found, names, card.sha256)
     save_taste(path, taste)
-    return path, taste.choices
+    likes = {name: round(float(like), 3) for name, like in zip(names, taste.likes, strict=True)}
+    return Learnt(path, taste.choices, likes)
 
 
 def digest_of(path: Path) -> str:

@@ -18,7 +18,7 @@ from .project import NAME as PROJECT
 
 NAME = "vds.taste"
 #: How many traits are told at most, and how much of one, in log odds a step, is worth telling.
-_TOLD, _COUNTS = 4, 0.5
+_TOLD, _COUNTS = 4, 1.0
 
 
 def taste_of(script: Path) -> Path | None:

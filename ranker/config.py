@@ -152,9 +152,9 @@ class TrainConfig:
 PAPER = TrainConfig(phases=(Phase(epochs=60, size=224, batch=128),))
 CPU = TrainConfig(
     phases=(
-        Phase(epochs=10, size=0, batch=128, share=0.8),
+        Phase(epochs=8, size=0, batch=128, share=0.8),
         Phase(epochs=4, size=64, frames=3, key_frames=1, batch=16),
-        Phase(epochs=3, size=96, frames=3, key_frames=1, batch=16),
+        Phase(epochs=2, size=96, frames=3, key_frames=1, batch=16),
         Phase(epochs=2, size=128, frames=3, key_frames=1, batch=16),
     ),
     inner=128,

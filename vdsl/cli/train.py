@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 _SHIPPED = Path("shipped")
 #: Clips with pictures that are filmed for a recipe, and the share of the stories whose clips get some: guides
 #: are quickly made and learnt from, pictures are not.
-_FILMED = {"cpu": (3_000, 0.1), "heads": (5_000, 0.1)}
+_FILMED = {"cpu": (2_400, 0.1), "heads": (5_000, 0.1)}
 _ELSE_FILMED = (10_000, 1.0)
 
 
@@ -38,7 +38,7 @@ def train(
         typer.Option(
             min=32,
             help="Clips to film with pictures, about half of them good.",
-            show_default="10000; 3000 for the recipe cpu, 5000 for heads",
+            show_default="10000; 2400 for the recipe cpu, 5000 for heads",
         ),
     ] = None,
     pictures: Annotated[

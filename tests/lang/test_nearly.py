@@ -47,6 +47,19 @@ def test_it_is_told_what_is_shown_and_why() -> None:
 
 
 @pytest.mark.parametrize(
+    ("line", "told"),
+    [
+        ("(anna sits down and yodels)", "no action is called `yodels`; `vdsc assets actions"),
+        ("(anna waves and the blorb)", "nothing is called `blorb` here; `vdsc assets props"),
+    ],
+)
+def test_a_verb_after_and_is_no_thing(line: str, told: str) -> None:
+    _, report = read(line, "apartment.kitchen")
+    (warning,) = [d for d in report.diagnostics if d.code == "VDS085"]
+    assert told in warning.help
+
+
+@pytest.mark.parametrize(
     ("line", "code"),
     [
         ("(anna wlaks to the door)", "VDS071"),  # letters changed places

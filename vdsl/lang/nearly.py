@@ -52,9 +52,18 @@ def is_forgiven(wrong: Sequence[Diagnostic], actions: Collection[str], things: C
 
 def why(wrong: Diagnostic) -> str:
     """What is wrong, and where what there is can be found."""
-    kind = {"VDS060": "props", "VDS071": "actions"}.get(wrong.code)
+    kind, label = {"VDS060": "props", "VDS071": "actions"}.get(wrong.code), wrong.label
+    if wrong.code == "VDS060" and _is_done_too(wrong.span):
+        kind, label = "actions", f"no action is called `{wrong.span.text}`"
     more = f"`vdsc assets {kind} --search WORDS` finds what there is" if kind else wrong.help
-    return "; ".join(filter(None, (wrong.label, more)))
+    return "; ".join(filter(None, (label, more)))
+
+
+def _is_done_too(span: Span) -> bool:
+    """Whether what names no thing is a verb after an ``and``: ``anna sits down and yodels``."""
+    before = span.source.text[max(0, span.start - 16) : span.start].split()[-1:]
+    word = fold(span.text)
+    return before == ["and"] and bool({word, *plain_forms(word)} & VERBS)
 
 
 def _is_slip(wrong: Diagnostic, actions: Collection[str], things: Collection[str]) -> bool:

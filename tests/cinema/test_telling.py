@@ -45,23 +45,23 @@ def test_differences_of_two_takes_add_up_nearly_to_that_of_their_scores() -> Non
     gains = advantages(BEST, other)
     assert sum(gains.values()) == pytest.approx(geometry_score(BEST) - geometry_score(other), rel=0.05)
     assert set(list(gains)[:3]) == {"legible", "foreground", "steadiness"}
-    judged = advantages(BEST, other, (1.0, 3.5), 10.0)
-    assert judged["logit"] == -2.5
+    judged = advantages(BEST, other, {"logit": -2.5, "taste": 3.0}, 10.0)
+    assert (judged["logit"], judged["taste"]) == (-2.5, 3.0)
     assert judged["foreground"] == pytest.approx(10.0 * gains["foreground"])
 
 
 def test_a_fault_that_only_one_of_two_takes_has_counts_by_itself() -> None:
     other = BEST | {"lead_room": -0.35, "foreground": 0.1, "size_error": 0.3, "thirds_error": 0.05}
-    plain, strict = (advantages(BEST, other, (0.0, 0.0), 10.0, flaw) for flaw in (0.0, 3.0))
+    plain, strict = (advantages(BEST, other, {"logit": 0.0}, 10.0, flaw) for flaw in (0.0, 3.0))
     more = {name: strict[name] - plain.get(name, 0.0) for name in strict}
     assert {name for name, gain in more.items() if gain} == {"lead_room", "visibility", "framing"}
     assert [more[name] for name in ("lead_room", "visibility", "framing")] == pytest.approx(
         [3.5, 10 / 3, 5.0]
     )
-    back = advantages(other, BEST, (0.0, 0.0), 10.0, 3.0)
+    back = advantages(other, BEST, {"logit": 0.0}, 10.0, 3.0)
     assert back["framing"] == pytest.approx(-5.0)
     assert compared("framing", BEST, other, True, "take 2") == "better framed than take 2"
-    assert advantages(other, other | {"clearance": 0.9}, (0.0, 0.0), 10.0, 3.0)["framing"] == 0.0
+    assert advantages(other, other | {"clearance": 0.9}, {"logit": 0.0}, 10.0, 3.0)["framing"] == 0.0
 
 
 def test_what_is_said_of_two_takes_quotes_both() -> None:
@@ -76,7 +76,7 @@ def test_what_is_said_of_two_takes_quotes_both() -> None:
 
 
 def test_every_part_of_the_score_and_every_criterion_can_be_told_of_two_takes() -> None:
-    assert set(_COMPARED) == {*WEIGHTS, *PENALTIES, *CRITERIA, "logit"}
+    assert set(_COMPARED) == {*WEIGHTS, *PENALTIES, *CRITERIA, "logit", "taste"}
 
 
 def test_faults_are_told_but_not_those_that_are_meant() -> None:

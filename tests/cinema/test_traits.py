@@ -32,10 +32,3 @@ def test_words_and_lenses_are_traits_too() -> None:
     assert one["speed"] > 0 == of()["speed"]
     assert of("dolly-zoom-in")["dolly-zoom"] == 1.0
     assert of("rack-focus")["static"] == 1.0
-
-
-def test_what_was_not_measured_is_nothing() -> None:
-    """Documents write what is no number as null."""
-    found = traits_of({"face": None, "height": 1.0}, "static", "of-nothing", np.array([50.0]))
-    assert np.isfinite(found).all()
-    assert found[list(TRAITS).index("face")] == 0.0

@@ -8,17 +8,14 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 from proposed_shots import proposed
-from tastes import some_taste
 
 from ranker.evaluate import spearman
-from ranker.taste import save_taste
 from vdsl.pipeline import cache as cache_module
 from vdsl.pipeline import glance
 from vdsl.pipeline.compile import Result, Workshop, compile_file
 from vdsl.pipeline.filming import Camerawork, Seen
 from vdsl.pipeline.glance import Looked, Scored, Screening, second_looks
 from vdsl.pipeline.judging import (
-    BEFORE_TASTE,
     BY_GUIDES,
     BY_PICTURES,
     DiscriminatorJudge,
@@ -210,13 +207,8 @@ def test_what_was_looked_at_goes_before_what_was_not() -> None:
     assert {i: m["visibility"] for i, m in scored.measures.items()} == {i: i for i in (3, *range(24, 40))}
 
 
-def test_the_discriminator_glances_by_guides_and_looks_at_more_with_a_taste(tmp_path: Path) -> None:
-    plain = DiscriminatorJudge(None, "cpu")
-    assert plain.glances == BY_GUIDES
-    taste = tmp_path / "taste.json"
-    save_taste(taste, some_taste())
-    assert DiscriminatorJudge(None, "cpu", taste).glances == BEFORE_TASTE
-    assert second_looks(80, BEFORE_TASTE) == 20
+def test_the_discriminator_glances_by_guides() -> None:
+    assert DiscriminatorJudge(None, "cpu").glances == BY_GUIDES
 
 
 def test_a_draft_proposes_for_the_takes_that_follow(project: Path) -> None:

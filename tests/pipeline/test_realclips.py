@@ -9,20 +9,24 @@ from pathlib import Path
 import numpy as np
 import pytest
 from tastes import some_taste
+from typer.testing import CliRunner
 
 from ranker.data import Dataset, ShardWriter
 from ranker.errors import RankerError
-from ranker.taste import save_taste
+from ranker.taste import load_taste, save_taste
 from runtime.video import VideoError, write_video
+from vdsl.cinema.measures import MEASURES
 from vdsl.cinema.traits import TRAITS
+from vdsl.cli import app
 from vdsl.pipeline.dataset import made
-from vdsl.pipeline.judging import log_odds
+from vdsl.pipeline.judging import prior
 from vdsl.pipeline.keys import judge_digest
 from vdsl.pipeline.labels import WORDS
 from vdsl.pipeline.lock import lock_path
 from vdsl.pipeline.options import Options
+from vdsl.pipeline.picked import picked
 from vdsl.pipeline.realclips import add_films, add_picks, clip_of, preferences, words_of
-from vdsl.pipeline.tasting import home_of, taste_of
+from vdsl.pipeline.tasting import Learnt, home_of, taste_of
 
 
 def film(path: Path, frames: int = 24, blue: int = 40) -> None:
@@ -104,10 +108,9 @@ def script_with_choice(folder: Path) -> Path:
         film(folder / "build" / "tale" / "shots" / shot / f"take-{rank}.mp4", blue=60 * rank)
         files = {name: f"shots/{shot}/take-{rank}.{end}" for name, end in FILES.items()}
         words = {"movement": "push", "scale": "medium", "angle": "high-angle"}
-        measures = {"elevation": 10.0 * rank, "speed": 0.5}
-        takes.append(
-            {"rank": rank, "key": key, "score": 0.9 - 0.1 * rank, **words, **files, "measures": measures}
-        )
+        measures = {"elevation": 10.0 * rank, "speed": 0.5, "face": None}
+        judged = {"score": 0.9 - 0.1 * rank, "logit": 2.0 - rank, "taste": 1.5}
+        takes.append({"rank": rank, "key": key, **judged, **words, **files, "measures": measures})
         track = {"camera": {"focal_mm": [35.0, 50.0]}}
         (folder / "build" / "tale" / files["track"]).write_text(json.dumps(track))
     document = {"judge": "ranker", "taste": None, "shots": [{"id": shot, "takes": takes}]}
@@ -121,17 +124,49 @@ def test_choices_are_read_with_the_takes_they_were_among(tmp_path: Path) -> None
     assert liked.frames.shape == (3, 8, 32, 32, 3)
     assert liked.chosen == 1
     assert abs(int(liked.frames[1, 0, 8, 8, 2]) - 120) < 8
-    assert liked.odds == pytest.approx([log_odds(0.8), log_odds(0.7), log_odds(0.6)])
-    traits = dict(zip(TRAITS, liked.traits.T, strict=True))
-    assert traits["elevation"] == pytest.approx([1, 2, 3])
-    assert (traits["push"].tolist(), traits["pan"].tolist()) == ([1.0] * 3, [0.0] * 3)
-    assert traits["focal"] == pytest.approx(np.full(3, np.log(42.5) / TRAITS["focal"].step))
     assert add_picks(tmp_path / "data", [script], made(0), 32) == 1
     assert add_picks(tmp_path / "data", [script], made(0), 32) == 0
     (label,) = Dataset(tmp_path / "data").labels
     assert (label.movement, label.scale, label.angle) == ("push/pull", "medium", "high-angle")
     lock_path(script).unlink()
     assert preferences(script) == []
+
+
+def test_choices_are_read_without_films_too(tmp_path: Path) -> None:
+    script = script_with_choice(tmp_path)
+    for some in (tmp_path / "build").rglob("*.mp4"):
+        some.unlink()
+    (shot,) = picked(script)
+    measured = [dict.fromkeys(MEASURES, 0.0) | {"elevation": 10.0 * k, "speed": 0.5} for k in (1, 2, 3)]
+    assert shot.odds == pytest.approx([2.0 - k + prior(m) for k, m in enumerate(measured, 1)])
+    traits = dict(zip(TRAITS, shot.traits.T, strict=True))
+    assert traits["elevation"] == pytest.approx([1, 2, 3])
+    assert (traits["push"].tolist(), traits["pan"].tolist()) == ([1.0] * 3, [0.0] * 3)
+    assert traits["focal"] == pytest.approx(np.full(3, np.log(42.5) / TRAITS["focal"].step))
+    document = tmp_path / "build" / "tale" / "storyboard.json"
+    document.write_text(re.sub(r'"logit": [^,]*,', '"logit": null,', document.read_text()))
+    assert picked(script)[0].odds.tolist() == [0.0, 0.0, 0.0]  # of a build by geometry alone
+
+
+def test_what_was_learnt_is_told(tmp_path: Path) -> None:
+    likes = dict.fromkeys(TRAITS, 0.0) | {
+        "height": -3.0,
+        "face": 2.0,
+        "pan": -1.6,
+        "speed": 1.55,
+        "focal": 1.0,
+    }
+    assert Learnt(tmp_path, 1, likes).words == ("a low camera", "faces to the camera", "no pan shots")
+    assert Learnt(tmp_path, 1, dict.fromkeys(TRAITS, 0.3)).words == ()
+    script = script_with_choice(tmp_path)
+    result = CliRunner().invoke(app, ["train", "--picks", str(script)])
+    assert result.exit_code == 0, result.output
+    assert "vds.taste: learnt from 1 choice" in result.stdout
+    assert load_taste(tmp_path / "vds.taste", tuple(TRAITS)).choices == 1
+    lock_path(script).unlink()
+    result = CliRunner().invoke(app, ["train", "--picks", str(script)])
+    assert result.exit_code != 0
+    assert "choose takes with `vdsc pick` first" in result.stderr
 
 
 def test_choices_without_a_build_are_told(tmp_path: Path) -> None:

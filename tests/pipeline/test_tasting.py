@@ -12,16 +12,14 @@ from proposed_shots import proposed
 from tastes import some_taste
 from typer.testing import CliRunner
 
-from ranker.infer import Ranker
-from ranker.taste import Choice, learn, load_taste, save_taste
-from ranker.weights import load_card
+from ranker.taste import load_taste, save_taste
 from vdsl.cinema.traits import TRAITS
 from vdsl.cli import app
 from vdsl.pipeline import cache as cache_module
 from vdsl.pipeline.filming import Camerawork
 from vdsl.pipeline.guides import about_of
 from vdsl.pipeline.judging import DiscriminatorJudge, log_odds
-from vdsl.pipeline.realclips import preferences
+from vdsl.pipeline.picked import picked
 from vdsl.pipeline.tasting import digest_of
 
 SCRIPT = """\
@@ -77,14 +75,13 @@ def test_choices_change_the_order_of_takes_and_are_forgotten_with_their_file(
     high = np.mean([height for takes in heights_of(build).values() for height in takes.values()])
     for shot, key in chosen.items():
         run("pick", story, shot, key)
-    for liked in preferences(story):
-        assert liked.odds.tolist() == pytest.approx(list(before[liked.shot].values()))
+    for some in picked(story):
+        assert some.odds.tolist() == pytest.approx(list(before[some.id].values()), abs=1e-3)
 
-    about = tuple(TRAITS), load_card().sha256
     told = json.loads(run("train", "--picks", story, "--json"))
     taste = tmp_path / "vds.taste"
     assert (told["taste"], told["choices"], list(told["likes"])) == (str(taste), 2, list(TRAITS))
-    learnt = load_taste(taste, *about)
+    assert load_taste(taste, tuple(TRAITS)).choices == 2
     (tmp_path / "story.vds.lock").unlink()  # so that its order is the judge's
     run("compile", story)
     assert document_of(build)["taste"] == digest_of(taste)
@@ -98,17 +95,12 @@ def test_choices_change_the_order_of_takes_and_are_forgotten_with_their_file(
 
     for shot, key in chosen.items():
         run("pick", story, shot, key)
-    ranker, again = Ranker.load(device="cpu"), []
-    for liked in preferences(story):
-        feature = ranker.score(liked.frames).feature
-        odds = liked.odds - learnt.adds(liked.traits, feature)
-        for key, without in zip(after[liked.shot], odds, strict=True):
-            if key in before[liked.shot]:
-                assert without == pytest.approx(before[liked.shot][key], abs=0.3)  # films are lossy
-        again.append(Choice(feature, liked.traits, odds, liked.chosen))
-    run("train", "--picks", story)  # what was learnt before is learnt anew, not on top
-    anew, expected = load_taste(taste, *about), learn(again, *about)
-    np.testing.assert_allclose(anew.likes, expected.likes, atol=1e-3)
+    for some in picked(story):  # what was learnt before is learnt anew, not on top
+        for take, odds in zip(some.takes, some.odds, strict=True):
+            assert odds + take["taste"] == pytest.approx(after[some.id][take["key"]], abs=1e-3)
+            if take["key"] in before[some.id]:
+                assert odds == pytest.approx(before[some.id][take["key"]], abs=1e-3)
+    assert "from your choices" in run("why", story, "room-anna-wave", "1")
 
     taste.unlink()
     (tmp_path / "story.vds.lock").unlink()
@@ -116,32 +108,13 @@ def test_choices_change_the_order_of_takes_and_are_forgotten_with_their_file(
     assert odds_of(tmp_path / "third") == before
 
 
-def test_what_a_taste_has_of_pictures_counts_in_full_looks_alone(tmp_path: Path) -> None:
-    """At a glance there are none."""
+def test_a_taste_counts_at_a_glance_too_and_is_told_apart(tmp_path: Path) -> None:
     act, grid = proposed(SCRIPT.rpartition("\n(")[0] + "\n")
     cameras, about = grid.cameras[:6], [about_of(act.line.shots[0], grid, act.filming, act.staged)] * 6
     seen = Camerawork("cpu").judge_frames(
         act.staged, act.line.shots[0].style, grid.story, cameras, about=about
     )
-    feature = Ranker.load(device="cpu").score(seen.frames, seen.guides).feature
-    unit = feature / np.linalg.norm(feature, axis=1, keepdims=True)
-    save_taste(tmp_path / "vds.taste", some_taste(50 * (unit[3] - unit.mean(0)), unit.mean(0)))
-    plain, tasting = DiscriminatorJudge(None, "cpu"), DiscriminatorJudge(None, "cpu", tmp_path / "vds.taste")
-    np.testing.assert_array_equal(plain.glance(cameras, seen), tasting.glance(cameras, seen))
-    was, now = (
-        np.array([log_odds(score) for score in judge.scores(cameras, seen)]) for judge in (plain, tasting)
-    )
-    assert (now - was).argmax() == 3
-    assert 0.5 < np.abs(now - was).max() <= 12.001
-
-
-def test_what_a_taste_has_of_traits_counts_at_a_glance_too(tmp_path: Path) -> None:
-    act, grid = proposed(SCRIPT.rpartition("\n(")[0] + "\n")
-    cameras, about = grid.cameras[:6], [about_of(act.line.shots[0], grid, act.filming, act.staged)] * 6
-    seen = Camerawork("cpu").judge_frames(
-        act.staged, act.line.shots[0].style, grid.story, cameras, about=about
-    )
-    save_taste(tmp_path / "vds.taste", some_taste(likes={"height": -2.0}))
+    save_taste(tmp_path / "vds.taste", some_taste(height=-2.0))
     plain, tasting = DiscriminatorJudge(None, "cpu"), DiscriminatorJudge(None, "cpu", tmp_path / "vds.taste")
     steps = np.array([camera.measures["height"] for camera in cameras]) / TRAITS["height"].step
     for judged in ("glance", "scores"):
@@ -150,3 +123,11 @@ def test_what_a_taste_has_of_traits_counts_at_a_glance_too(tmp_path: Path) -> No
             for judge in (plain, tasting)
         )
         np.testing.assert_allclose(now - was, 12.0 * np.tanh(-2.0 * steps / 12.0), atol=1e-3)
+    for camera, before, after in zip(cameras, was, now, strict=True):
+        alone, tasted = (
+            judge.opinion(camera, 1.0 / (1.0 + np.exp(-odds / 15.0)))
+            for judge, odds in ((plain, before), (tasting, after))
+        )
+        assert (alone.taste, tasted.taste) == (0.0, pytest.approx(after - before, abs=1e-3))
+        assert alone.logit is not None
+        assert tasted.logit == pytest.approx(alone.logit, abs=1e-3)

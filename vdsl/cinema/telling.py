@@ -92,6 +92,7 @@ _COMPARED = {
     "empty": ("less empty", "emptier", "empty"),
     "company_cut": ("others less cut off", "others more cut off", "company_cut"),
     "logit": ("liked better by the ranker", "liked less by the ranker", "logit"),
+    "taste": ("more to your taste", "less to your taste", "taste"),
 }
 
 #: Of every measure that may be a fault: what is wrong then.
@@ -155,14 +156,14 @@ def penalties(measures: Measures) -> dict[str, float]:
 def advantages(
     measures: Measures,
     other: Measures,
-    logits: tuple[float, float] | None = None,
+    judged: Mapping[str, float] | None = None,
     scale: float = 1.0,
     flaw: float = 0.0,
 ) -> dict[str, float]:
     """By how much each part puts one take before another, largest first; negative where it is behind.
 
     In points of the geometry score times ``scale``, and ``flaw`` times the gravity of faults in every
-    criterion; logits: what the discriminator gives both
+    criterion; judged: by how much the discriminator (``logit``) and the writer's ``taste`` put it before
     """
     a, b = terms(measures), terms(other)
     pa, pb = penalties(measures), penalties(other)
@@ -173,13 +174,12 @@ def advantages(
     here, there = gravity(measures), gravity(other)
     for name in CRITERIA if flaw else ():
         out[name] = out.get(name, 0.0) + flaw * (float(there[name]) - float(here[name]))
-    if logits is not None:
-        out["logit"] = logits[0] - logits[1]
+    out |= judged or {}
     return dict(sorted(out.items(), key=lambda item: -item[1]))
 
 
 def compared(part: str, measures: Measures, other: Measures, better: bool, rival: str = "") -> str:
-    """``more lead room than take 2 (0.18 against 0.09)``; both may hold a ``logit`` besides the measures."""
+    """``more lead room than take 2 (0.18 against 0.09)``; both may hold what was judged too."""
     more, less, quoted = _COMPARED[part]
     if part == "steadiness" and abs(measures["angular_speed"] - other["angular_speed"]) < 2.0:
         quoted = "jerk" if abs(measures["speed"] - other["speed"]) < 0.1 else "speed"

@@ -35,8 +35,8 @@ _MEASURED = {
     "lead_room": Trait(0.3, "room ahead of the face", "room behind the head"),
     "headroom": Trait(0.1, "air over the head", "little air over the head"),
     "thirds_error": Trait(0.1, "eyes off the upper third", "eyes on the upper third"),
-    "interest": Trait(0.3, "what is acted on, too", "who acts alone"),
-    "heads": Trait(0.3, "everybody's head", "fewer heads"),
+    "interest": Trait(0.3, "what is acted on", "who acts alone"),
+    "heads": Trait(0.3, "all heads", "fewer heads"),
     "together": Trait(0.3, "heads close together", "heads apart"),
     "hands_shown": Trait(0.5, "hands", "no hands"),
     "foreground": Trait(0.1, "something near in the picture", "nothing near in the picture"),
@@ -64,21 +64,20 @@ _CLOSENESS = {name: -float(rank) for rank, name in enumerate(SIZES)}  # from clo
 
 
 def traits_of(
-    measures: Mapping[str, float | None], movement: str, scale: str, focal: NDArray[np.float64]
+    measures: Mapping[str, float], movement: str, scale: str, focal: NDArray[np.float64]
 ) -> NDArray[np.float64]:
     """The traits of a take in steps, [M] in the order of :data:`TRAITS`.
 
-    measures: as ``storyboard.json`` has them, a trait that was not measured is 0; movement, scale: canonical
-    words; focal: of its frames, mm
+    measures: by the names of :mod:`.measures`; movement, scale: canonical words; focal: of its frames, mm
     """
     moves = families(movement)
     found = {
-        **{name: measures.get(name) or 0.0 for name in _MEASURED},
-        "slant": abs(measures.get("elevation") or 0.0),
+        **{name: measures[name] for name in _MEASURED},
+        "slant": abs(measures["elevation"]),
         "closeness": _CLOSENESS.get(scale, 0.0),
         "focal": math.log(float(np.mean(focal))),
-        "speed": math.log1p(measures.get("speed") or 0.0),
-        "turning": math.log1p((measures.get("angular_speed") or 0.0) / 10.0),
+        "speed": math.log1p(measures["speed"]),
+        "turning": math.log1p(measures["angular_speed"] / 10.0),
         **{name: float(name in moves) for name in _MOVEMENTS},
     }
     return np.array([found[name] / trait.step for name, trait in TRAITS.items()])

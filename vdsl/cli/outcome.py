@@ -89,7 +89,7 @@ def _facts(take: BuiltTake) -> TakeFacts:
     camera = take.camera
     words = {"movement": camera.movement, "scale": camera.scale, "angle": camera.angle}
     measures = {name: 0.0 for name in MEASURES} | camera.measures
-    return TakeFacts(take.rank, take.score, words, None, measures, camera.params, take.logit)
+    return TakeFacts(take.rank, take.score, words, None, measures, camera.params, take.logit, take.taste)
 
 
 def _further(result: Result) -> list[str]:

@@ -64,8 +64,8 @@ def train(
     weights: Annotated[
         Path | None,
         typer.Option(
-            help="Weights to start from, a folder or `shipped`; with --picks: whose features.",
-            show_default="random ones; with --picks the shipped",
+            help="Weights to start from, a folder or `shipped`.",
+            show_default="random ones",
         ),
     ] = None,
     seed: Annotated[int, typer.Option(min=0, help="Seed of the stories and the training.")] = 0,
@@ -79,7 +79,7 @@ def train(
     the takes chosen with `vdsc pick` and kept as vds.taste in the project, where compile finds it.
     """
     if picks:
-        _learn(picks, None if weights == _SHIPPED else weights, device, as_json)
+        _learn(picks, as_json)
     elif out is None:
         stop("name a folder to train in, or a storyboard with --picks", USAGE)
     else:
@@ -88,15 +88,15 @@ def train(
         _train(out, data or out / "clips", filmed, recipe, ablation, weights, seed, device, as_json)
 
 
-def _learn(picks: list[Path], weights: Path | None, device: Device, as_json: bool) -> None:
-    # Only now: --help must not wait for numpy and torch.
+def _learn(picks: list[Path], as_json: bool) -> None:
+    # Only now: --help must not wait for numpy and scipy.
     from ..pipeline.tasting import learn_taste
     from .failures import failures_told
 
     with failures_told(picks[0]):
-        learnt = learn_taste(picks, weights, device.value)
+        learnt = learn_taste(picks)
     count = f"{learnt.choices} choice{'s' if learnt.choices > 1 else ''}"
-    likes = f": more of {', '.join(learnt.words)}" if learnt.words else ""
+    likes = f"; you seem to like {', '.join(learnt.words)}" if learnt.words else ""
     print(
         json.dumps({"taste": str(learnt.path), "choices": learnt.choices, "likes": learnt.likes})
         if as_json

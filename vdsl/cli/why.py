@@ -187,5 +187,7 @@ def _take(told: dict[str, Any], judge: str, asked: dict[str, list[str]]) -> Iter
             yield f"  {name.replace('_', ' '):<18} × {left:.3f}"
     yield f"  {'geometry score':<18} {told['geometry']:9.3f}"
     if judge == "ranker" and told["logit"] is not None:
-        yield f"  log odds: {told['logit']:.2f} from the pictures, {told['prior']:+.2f} from the geometry"
+        taste = f", {told['taste']:+.2f} from your choices" if told["taste"] else ""
+        geometry = f"{told['prior']:+.2f} from the geometry"
+        yield f"  log odds: {told['logit']:.2f} from the pictures, {geometry}{taste}"
     yield ""

@@ -142,7 +142,8 @@ def _facts(take: Document) -> TakeFacts:
     known = {name: value for name, value in take["measures"].items() if value is not None}
     words = {k: take[k] for k in ("movement", "scale", "angle")}
     measures = {name: 0.0 for name in MEASURES} | known
-    return TakeFacts(take["rank"], take["score"] or 0.0, words, take["achieved"], measures, {}, take["logit"])
+    score, judged = take["score"] or 0.0, (take["logit"], take["taste"])
+    return TakeFacts(take["rank"], score, words, take["achieved"], measures, {}, *judged)
 
 
 def _take(document: Document, take: Document, why: str) -> dict[str, Any]:

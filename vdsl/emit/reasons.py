@@ -19,7 +19,10 @@ _WORTH = 0.004  # points of the geometry score below which a difference is not t
 
 @dataclass(frozen=True)
 class TakeFacts:
-    """One take as a build keeps it. camera: its words; achieved: as read off its track; None: not kept."""
+    """One take as a build keeps it. camera: its words; achieved: as read off its track; None: not kept.
+
+    logit, taste: what discriminator and taste say of it, log odds
+    """
 
     rank: int
     score: float
@@ -28,13 +31,20 @@ class TakeFacts:
     measures: dict[str, float]
     params: dict[str, float | str]
     logit: float | None
+    taste: float = 0.0
+
+    @property
+    def judged(self) -> dict[str, float]:
+        """What was said of it besides its measures, by the names of the parts."""
+        return {"logit": self.logit or 0.0, "taste": self.taste}
 
 
 def gains_of(take: TakeFacts, other: TakeFacts) -> dict[str, float]:
     """Of each part, in log odds where the discriminator judged, in points of the geometry score else."""
     if take.logit is None or other.logit is None:
         return advantages(take.measures, other.measures)
-    return advantages(take.measures, other.measures, (take.logit, other.logit), PRIOR, FLAW)
+    judged = {name: value - other.judged[name] for name, value in take.judged.items()}
+    return advantages(take.measures, other.measures, judged, PRIOR, FLAW)
 
 
 def phrases_of(
@@ -44,8 +54,7 @@ def phrases_of(
     least = _WORTH if take.logit is None else _WORTH * PRIOR
     told = [p for p, gain in gains.items() if (gain if better else -gain) > least]
     told.sort(key=lambda p: -abs(gains[p]))
-    mine = take.measures | {"logit": take.logit or 0.0}
-    theirs = other.measures | {"logit": other.logit or 0.0}
+    mine, theirs = take.measures | take.judged, other.measures | other.judged
     return [compared(p, mine, theirs, better, rival if i == 0 else "") for i, p in enumerate(told)]
 
 

@@ -145,6 +145,7 @@ def _take(shot: str, take: BuiltTake) -> dict[str, Any]:
         "chosen": take.chosen,
         "score": rounded(take.score, MEASURE_DECIMALS),
         "logit": None if take.logit is None else rounded(take.logit, MEASURE_DECIMALS),
+        "taste": rounded(take.taste, MEASURE_DECIMALS),
         "story": take.camera.story,
         "variant": take.variant,
         "movement": take.camera.movement,

@@ -67,7 +67,8 @@ class BuiltTake:
     """One kept proposal. rank: 1 is the best; score: the judge's, higher is better.
 
     achieved: what its track turned out to be
-    logit: what the discriminator alone gave it, in log odds; None where it was not asked
+    logit: what the discriminator alone gave it, in log odds; None where it was not asked; taste: what a
+        writer's taste added to that
     key: by which it is found again among the same proposals; chosen: whether somebody chose it
     people: everybody in the scene, and where they go
     """
@@ -80,6 +81,7 @@ class BuiltTake:
     media: TakeMedia
     achieved: Achieved
     logit: float | None = None
+    taste: float = 0.0
     key: str = ""
     chosen: bool = False
     people: tuple[Walk, ...] = ()

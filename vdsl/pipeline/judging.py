@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple, Protocol
 
@@ -38,8 +39,15 @@ BY_PICTURES = Glance((1, 6), True, 0.25, 16)
 #: Guides of all frames. They are drawn in a fraction of the time, and put proposals nearer to the order of
 #: full looks (Spearman 0.995, against 0.977 by the pictures of two frames).
 BY_GUIDES = Glance(tuple(range(SEGMENTS)), False, 0.15, 12)
-#: The same where a taste counts: it goes by what is in pictures too, and may prefer what comes behind.
-BEFORE_TASTE = Glance(BY_GUIDES.frames, False, 0.25, 20)
+
+
+@dataclass(frozen=True)
+class Opinion:
+    """logit: what the pictures alone say of a take, in log odds, None where none were seen; taste: what a
+    writer's taste adds"""
+
+    logit: float | None
+    taste: float
 
 
 class Judge(Protocol):
@@ -64,8 +72,8 @@ class Judge(Protocol):
         """Scores [P] by what ``glances`` asks for."""
         ...
 
-    def logit(self, camera: CameraProposal, score: float) -> float | None:
-        """What the pictures alone added to a score given before, in log odds; None where none were seen."""
+    def opinion(self, camera: CameraProposal, score: float) -> Opinion:
+        """What a score given before is made of, besides the prior."""
         ...
 
 
@@ -82,8 +90,8 @@ class GeometryJudge:
     def glance(self, cameras: tuple[CameraProposal, ...], seen: Seen) -> NDArray[np.float64]:
         return self.scores(cameras, None)
 
-    def logit(self, camera: CameraProposal, score: float) -> float | None:
-        return None
+    def opinion(self, camera: CameraProposal, score: float) -> Opinion:
+        return Opinion(None, 0.0)
 
 
 _PRIOR_MIDDLE = 0.75
@@ -119,13 +127,10 @@ class DiscriminatorJudge:
         # Only now: a geometry run must not pay for torch.
         from ranker.infer import Ranker
         from ranker.taste import load_taste
-        from ranker.weights import load_card
 
         self._ranker = Ranker.load(weights, device="cuda" if device == "cuda" else "cpu")
         self._ranker.fits(SEGMENTS, JUDGE_SIZE[0])
-        self._taste = (
-            load_taste(taste, tuple(TRAITS), load_card(weights).sha256) if taste is not None else None
-        )
+        self._taste = load_taste(taste, tuple(TRAITS)) if taste is not None else None
 
     def scores(self, cameras: tuple[CameraProposal, ...], seen: Seen | None) -> NDArray[np.float64]:
         if seen is None:
@@ -135,31 +140,27 @@ class DiscriminatorJudge:
     @property
     def glances(self) -> Glance:
         """By guides where the weights were taught by such alone."""
-        if not self._ranker.judges_guides:
-            return BY_PICTURES
-        return BY_GUIDES if self._taste is None else BEFORE_TASTE
+        return BY_GUIDES if self._ranker.judges_guides else BY_PICTURES
 
     def glance(self, cameras: tuple[CameraProposal, ...], seen: Seen) -> NDArray[np.float64]:
         if self.glances.pictures:
             return self._scored(cameras, self._ranker.glance(seen.frames, self.glances.frames, seen.guides))
         if seen.guides is None:
             raise ValueError("a glance by guides needs some")
-        return self._scored(cameras, self._ranker.by_guides(seen.guides), pictures=False)
+        return self._scored(cameras, self._ranker.by_guides(seen.guides))
 
-    def _scored(
-        self, cameras: tuple[CameraProposal, ...], seen: Scores, pictures: bool = True
-    ) -> NDArray[np.float64]:
-        """From the logit: p_b itself runs out of digits near 1. pictures: whether some were looked at"""
+    def _scored(self, cameras: tuple[CameraProposal, ...], seen: Scores) -> NDArray[np.float64]:
+        """From the logit: p_b itself runs out of digits near 1."""
         logit = seen.margin.astype(np.float64)
-        if self._taste is not None:
-            traits = np.stack([_traits(c) for c in cameras])
-            logit += self._taste.adds(traits, seen.feature if pictures else None)
-        priors = np.array([prior(c.measures) for c in cameras])
-        return np.asarray(1.0 / (1.0 + np.exp(-(logit + priors) / _TEMPERATURE)))
+        added = np.array([prior(c.measures) + self._liked(c) for c in cameras])
+        return np.asarray(1.0 / (1.0 + np.exp(-(logit + added) / _TEMPERATURE)))
 
-    def logit(self, camera: CameraProposal, score: float) -> float | None:
-        return log_odds(score) - prior(camera.measures)
+    def opinion(self, camera: CameraProposal, score: float) -> Opinion:
+        liked = self._liked(camera)
+        return Opinion(log_odds(score) - prior(camera.measures) - liked, liked)
 
-
-def _traits(camera: CameraProposal) -> NDArray[np.float64]:
-    return traits_of(camera.measures, camera.movement, camera.scale, camera.track.focal)
+    def _liked(self, camera: CameraProposal) -> float:
+        if self._taste is None:
+            return 0.0
+        traits = traits_of(camera.measures, camera.movement, camera.scale, camera.track.focal)
+        return float(self._taste.adds(traits[None])[0])

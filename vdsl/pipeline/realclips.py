@@ -8,7 +8,6 @@ their pictures alone. What cannot be read is told, not skipped in silence.
 from __future__ import annotations
 
 import hashlib
-import json
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -24,13 +23,11 @@ from ranker.data import ShardWriter, made_of
 from ranker.errors import RankerError
 from runtime.video import VideoError
 
-from ..cinema.traits import traits_of
 from ..emit.video import take_paths
 from ..lang.words import CAMERA_WORDS
 from .filming import SEGMENTS, segment_frames
-from .judging import DiscriminatorJudge, log_odds
 from .labels import WORDS, classes
-from .lock import lock_path, read_lock
+from .picked import Picked, picked
 
 FILMS = (".mp4", ".mov", ".m4v")
 #: Every so many folders (or scripts), one is for testing: those whose digest says so.
@@ -41,18 +38,13 @@ _TEST_SHARE = 0.15
 class Preference:
     """A shot whose take somebody chose. frames: uint8 [T, 8, S, S, 3] of its takes; chosen: which of them
 
-    words: movement, size and angle of every take; traits: theirs [T, M] (:mod:`vdsl.cinema.traits`)
-    odds: log odds [T] by which the build put them in order, zeros where it had not asked the ranker
-    taste: digest of what it had asked beside the ranker
+    words: movement, size and angle of every take
     """
 
     shot: str
     frames: NDArray[np.uint8]
     chosen: int
     words: tuple[tuple[str, str, str], ...]
-    traits: NDArray[np.float64]
-    odds: NDArray[np.float64]
-    taste: str | None
 
 
 def clip_of(path: Path, size: int = 224) -> NDArray[np.uint8]:
@@ -155,53 +147,19 @@ def _writer(folder: Path, made: dict[str, Any], size: int) -> ShardWriter:
 
 
 def preferences(script: Path, size: int = 224, build: Path | None = None) -> list[Preference]:
-    """The shots of a script that somebody chose a take for, with all takes of its build.
+    """The shots of a script that somebody chose a take for, with the films of all takes of its build.
 
-    build: its folder, None for ``build/NAME`` where one is, beside the script or here. Raises
-    :class:`RankerError` where there are choices but no build, ScriptError for a lock that does not read.
+    As :func:`vdsl.pipeline.picked.picked`; raises :class:`RankerError` for a draft, which has no films, too.
     """
-    lock = read_lock(lock_path(script))
-    if not lock.choices:
-        return []
-    folder = build or _build_of(script)
-    try:
-        document = json.loads((folder / "storyboard.json").read_text("utf-8"))
-        shots: dict[str, dict[str, Any]] = {s["id"]: s for s in document["shots"]}
-        found = [
-            preference(folder, document, shots[c.shot], c.key, size) for c in lock.choices if c.shot in shots
-        ]
-    except FileNotFoundError as error:
-        raise RankerError(f"{folder}: has no films of {script}; compile it first") from error
-    except (ValueError, KeyError, TypeError) as error:
-        raise RankerError(f"{folder}: is no build of this version; compile {script} again") from error
-    return [f for f in found if f is not None]
+    return [_preference(shot, size) for shot in picked(script, build)]
 
 
-def preference(
-    folder: Path, document: dict[str, Any], entry: dict[str, Any], key: str, size: int
-) -> Preference | None:
-    takes = entry["takes"]
-    keys = [take["key"] for take in takes]
-    if key not in keys or len(takes) < 2:
-        return None
-    if any(take["video"] is None for take in takes):
-        raise RankerError(f"{folder}: is a draft, which has no films to learn from; compile it whole first")
-    frames = np.stack([clip_of(take_paths(folder, entry["id"], take["rank"])[0], size) for take in takes])
-    words = tuple((str(t["movement"]), str(t["scale"]), str(t["angle"])) for t in takes)
-    traits = np.stack([_traits(folder, take) for take in takes])
-    ranked = document["judge"] == DiscriminatorJudge.name
-    odds = np.array([log_odds(float(take["score"])) if ranked else 0.0 for take in takes])
-    return Preference(entry["id"], frames, keys.index(key), words, traits, odds, document.get("taste"))
-
-
-def _traits(folder: Path, take: dict[str, Any]) -> NDArray[np.float64]:
-    focal = json.loads((folder / take["track"]).read_text("utf-8"))["camera"]["focal_mm"]
-    return traits_of(take["measures"], take["movement"], take["scale"], np.array(focal))
-
-
-def _build_of(script: Path) -> Path:
-    here, beside = Path("build") / script.stem, script.parent / "build" / script.stem
-    return here if (here / "storyboard.json").exists() or not beside.exists() else beside
+def _preference(shot: Picked, size: int) -> Preference:
+    if any(take["video"] is None for take in shot.takes):
+        raise RankerError(f"{shot.build}: is a draft, which has no films; compile it whole first")
+    films = [take_paths(shot.build, shot.id, take["rank"])[0] for take in shot.takes]
+    words = tuple((str(t["movement"]), str(t["scale"]), str(t["angle"])) for t in shot.takes)
+    return Preference(shot.id, np.stack([clip_of(film, size) for film in films]), shot.chosen, words)
 
 
 def _side(group: str) -> str:

@@ -35,7 +35,7 @@ from .depends import digest, shot_text
 from .edit import CANDIDATES, Ends, candidates, ends_of
 from .filming import Camerawork
 from .glance import Scored, Screening
-from .judging import Judge
+from .judging import Judge, Opinion
 from .keys import code_digest, judge_digest, options_digest
 from .options import Options
 from .packing import PackError, pack, unpack
@@ -64,7 +64,7 @@ class Kept:
     frames: int
     subject: Subject | None
     achieved: Achieved
-    logit: float | None
+    opinion: Opinion
     people: tuple[Walk, ...]
     ends: Ends
     proposals: int
@@ -289,7 +289,7 @@ class Shooting:
                 story.frames,
                 _subject(grid, act, story),
                 achieved(camera, subject_of(shot, story, act.filming), act.filming.rig),
-                judge().logit(camera, score),
+                judge().opinion(camera, score),
                 tuple(walk_of(name, way) for name, way in story.performances.items()),
                 edge,
                 shot.proposals,
@@ -437,7 +437,8 @@ def _take(kept: Kept, rank: int, media: TakeMedia, chosen: bool) -> BuiltTake:
         kept.subject,
         media,
         kept.achieved,
-        kept.logit,
+        kept.opinion.logit,
+        kept.opinion.taste,
         kept.key,
         chosen,
         kept.people,

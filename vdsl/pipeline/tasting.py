@@ -1,15 +1,15 @@
 """What a writer's choices teach the discriminator, kept in the project as ``vds.taste``.
 
-Assumes scripts with a lock and a build that holds the chosen takes and the others. What is learnt is why
-somebody chose another take than ``compile`` would have: it starts from the scores of the build. Guarantees
-that without such a file nothing is other than without choices.
+Assumes scripts with a lock and a build that holds the chosen takes and the others; no film is looked at, so
+a draft is as good. What is learnt is why somebody chose another take than ``compile`` would have: it starts
+from the scores of the build, without what an earlier taste added. Guarantees that without such a file
+nothing is other than without choices.
 """
 
 from __future__ import annotations
 
 import hashlib
 from collections.abc import Sequence
-from contextlib import suppress
 from pathlib import Path
 from typing import NamedTuple
 
@@ -18,7 +18,7 @@ from .project import NAME as PROJECT
 
 NAME = "vds.taste"
 #: How many traits are told at most, and how much of one, in log odds a step, is worth telling.
-_TOLD, _COUNTS = 4, 1.0
+_TOLD, _WORTH_TELLING = 3, 1.5
 
 
 def taste_of(script: Path) -> Path | None:
@@ -57,42 +57,25 @@ class Learnt(NamedTuple):
     def words(self) -> tuple[str, ...]:
         """What counts most of it, in words; nothing where all counts little."""
         most = sorted(self.likes, key=lambda name: -abs(self.likes[name]))[:_TOLD]
-        some = [name for name in most if abs(self.likes[name]) >= _COUNTS]
+        some = [name for name in most if abs(self.likes[name]) >= _WORTH_TELLING]
         return tuple(TRAITS[name].more if self.likes[name] > 0 else TRAITS[name].less for name in some)
 
 
-def learn_taste(scripts: Sequence[Path], weights: Path | None = None, device: str = "auto") -> Learnt:
+def learn_taste(scripts: Sequence[Path]) -> Learnt:
     """Learn from the takes chosen for scripts.
 
     Raises :class:`ranker.RankerError` where nothing is chosen or no build has it, ScriptError for a lock that
     does not read, OSError.
     """
-    # Only now: `compile` asks where a taste is before it needs torch.
-    from ranker.errors import RankerError
-    from ranker.infer import Ranker
-    from ranker.taste import Choice, learn, load_taste, save_taste
-    from ranker.weights import load_card
+    # Only now: `compile` asks where a taste is before it needs scipy.
+    from ranker.taste import Choice, learn, save_taste
 
-    from .filming import SEGMENTS
-    from .realclips import preferences
+    from .picked import picked
 
-    found = []
-    ranker, digest = Ranker.load(weights, device if device in ("cpu", "cuda") else "auto"), None
-    ranker.fits(SEGMENTS)
-    card, path, names = load_card(weights), home_of(scripts[0]), tuple(TRAITS)
-    with suppress(RankerError):  # none yet, or another's: builds were not put in order by such
-        before, digest = load_taste(path, names, card.sha256), digest_of(path)
-    for script in scripts:
-        for liked in preferences(script, ranker.config.size):
-            feature = ranker.score(liked.frames).feature
-            # What was learnt before is learnt anew, not on top.
-            known = digest is not None and liked.taste == digest
-            again = before.adds(liked.traits, feature) if known else 0.0
-            found.append(Choice(feature, liked.traits, liked.odds - again, liked.chosen))
-    taste = learn(found, names, card.sha256)
+    found = [Choice(shot.traits, shot.odds, shot.chosen) for script in scripts for shot in picked(script)]
+    path, taste = home_of(scripts[0]), learn(found, tuple(TRAITS))
     save_taste(path, taste)
-    likes = {name: round(float(like), 3) for name, like in zip(names, taste.likes, strict=True)}
-    return Learnt(path, taste.choices, likes)
+    return Learnt(path, taste.choices, dict(zip(TRAITS, taste.likes.tolist(), strict=True)))
 
 
 def digest_of(path: Path) -> str:

@@ -109,6 +109,7 @@ def _take_facts(folder: Path, take: Mapping[str, Any]) -> TakeFacts:
         {name: 0.0 for name in MEASURES} | measures,
         dict(track["params"]),
         take.get("logit"),
+        float(take.get("taste") or 0.0),
     )
 
 
@@ -172,6 +173,7 @@ def _told(facts: ShotFacts, k: int) -> dict[str, Any]:
         "geometry": round(geometry, 6),
         "logit": take.logit,
         "prior": None if take.logit is None else round(prior(take.measures), 6),
+        "taste": round(take.taste, 6),
         "against": [_against(facts.takes, k, other) for other in range(len(facts.takes)) if other != k],
     }
 

@@ -10,7 +10,6 @@ be read, compared and mended by hand.
 from __future__ import annotations
 
 import json
-import math
 import os
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -32,6 +31,7 @@ _RIDGE = 3.0  # of the head, in choices
 _CALMED = 4.0
 _MOST = 12.0  # log odds a taste may add or take away
 _DECIMALS = 4
+_GREATEST = 1e6  # number in a file
 Array = NDArray[np.float64]
 
 
@@ -122,7 +122,7 @@ def load_taste(path: Path, traits: tuple[str, ...]) -> Taste:
         return Taste(likes, usual, traits, int(about["choices"]))
     except OSError as error:
         raise RankerError(f"{path}: cannot be read: {error.strerror or error}") from error
-    except (ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
+    except (ValueError, KeyError, TypeError, AttributeError, OverflowError, RecursionError) as error:
         raise RankerError(
             f"{path}: is no taste of this version, or damaged; `vdsc train --picks` again, or remove it"
         ) from error
@@ -133,6 +133,6 @@ def _numbers(found: dict[str, Any], traits: tuple[str, ...]) -> Array:
     if not found.keys() <= set(traits):
         raise ValueError
     values = [float(found.get(name, 0.0)) for name in traits]
-    if not all(math.isfinite(value) for value in values):
+    if not all(abs(value) <= _GREATEST for value in values):  # nor NaN
         raise ValueError
     return np.array(values)

@@ -47,6 +47,8 @@ def test_differences_of_two_takes_add_up_nearly_to_that_of_their_scores() -> Non
     assert set(list(gains)[:3]) == {"legible", "foreground", "steadiness"}
     judged = advantages(BEST, other, {"logit": -2.5, "taste": 3.0}, 10.0)
     assert (judged["logit"], judged["taste"]) == (-2.5, 3.0)
+    told = compared("taste", BEST | {"taste": 4.0}, other | {"taste": 1.0}, True, "take 2")
+    assert told == "more to your taste than take 2 (4.00 against 1.00)"
     assert judged["foreground"] == pytest.approx(10.0 * gains["foreground"])
 
 

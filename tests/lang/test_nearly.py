@@ -50,6 +50,7 @@ def test_it_is_told_what_is_shown_and_why() -> None:
     ("line", "told"),
     [
         ("(anna sits down and yodels)", "no action is called `yodels`; `vdsc assets actions"),
+        ("(anna waves and milk)", "nothing is called `milk` here; `vdsc assets props"),
         ("(anna waves and the blorb)", "nothing is called `blorb` here; `vdsc assets props"),
     ],
 )

@@ -25,7 +25,7 @@ from vdsl.pipeline.labels import WORDS
 from vdsl.pipeline.lock import lock_path
 from vdsl.pipeline.options import Options
 from vdsl.pipeline.picked import picked
-from vdsl.pipeline.realclips import add_films, add_picks, clip_of, preferences, words_of
+from vdsl.pipeline.realclips import add_films, add_picks, clip_of, words_of
 from vdsl.pipeline.tasting import Learnt, home_of, taste_of
 
 
@@ -120,16 +120,16 @@ def script_with_choice(folder: Path) -> Path:
 
 def test_choices_are_read_with_the_takes_they_were_among(tmp_path: Path) -> None:
     script = script_with_choice(tmp_path)
-    (liked,) = preferences(script, 32)
-    assert liked.frames.shape == (3, 8, 32, 32, 3)
-    assert liked.chosen == 1
-    assert abs(int(liked.frames[1, 0, 8, 8, 2]) - 120) < 8
+    (shot,) = picked(script)
+    assert (len(shot.takes), shot.chosen) == (3, 1)
     assert add_picks(tmp_path / "data", [script], made(0), 32) == 1
     assert add_picks(tmp_path / "data", [script], made(0), 32) == 0
-    (label,) = Dataset(tmp_path / "data").labels
+    data = Dataset(tmp_path / "data")
+    (label,) = data.labels
     assert (label.movement, label.scale, label.angle) == ("push/pull", "medium", "high-angle")
+    assert abs(int(data.clip(0, [0], 32)[0, 8, 8, 2]) - 120) < 8
     lock_path(script).unlink()
-    assert preferences(script) == []
+    assert picked(script) == []
 
 
 def test_choices_are_read_without_films_too(tmp_path: Path) -> None:
@@ -173,15 +173,25 @@ def test_choices_without_a_build_are_told(tmp_path: Path) -> None:
     script = script_with_choice(tmp_path)
     document = tmp_path / "build" / "tale" / "storyboard.json"
     whole = document.read_text()
-    document.write_text(re.sub(r'"video": "[^"]*"', '"video": null', whole))
-    with pytest.raises(RankerError, match=r"a draft.*compile it whole"):
-        preferences(script)
+    drafted = json.loads(whole)
+    drafted["shots"][0]["takes"] = drafted["shots"][0]["takes"][1:2]
+    document.write_text(json.dumps(drafted))
+    with pytest.raises(RankerError, match=r"no other takes beside those chosen; compile .* whole"):
+        picked(script)
+    for damaged in (
+        whole.replace('"taste": 1.5', '"was": 1.5'),
+        re.sub(r'"measures": {[^}]*}', '"measures": []', whole),
+    ):
+        assert damaged != whole
+        document.write_text(damaged)
+        with pytest.raises(RankerError, match=r"no build of this version; compile .* again"):
+            picked(script)
     document.write_text("{}")
     with pytest.raises(RankerError, match="compile"):
-        preferences(script)
+        picked(script)
     document.unlink()
     with pytest.raises(RankerError, match="compile"):
-        preferences(script)
+        picked(script)
 
 
 def test_a_taste_belongs_to_its_project_and_counts_in_what_is_kept(tmp_path: Path) -> None:

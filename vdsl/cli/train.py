@@ -78,6 +78,8 @@ def train(
     OUT/weights; use them with `vdsc compile --weights OUT/weights`. With --picks a small head is learnt from
     the takes chosen with `vdsc pick` and kept as vds.taste in the project, where compile finds it.
     """
+    if picks and weights is not None:
+        stop("a taste is learnt without weights: leave --weights out", USAGE)
     if picks:
         _learn(picks, as_json)
     elif out is None:

@@ -60,10 +60,10 @@ def why(wrong: Diagnostic) -> str:
 
 
 def _is_done_too(span: Span) -> bool:
-    """Whether what names no thing is a verb after an ``and``: ``anna sits down and yodels``."""
+    """Whether what names no thing is a verb after an ``and``: ``sits down and yodels``, not ``and milk``."""
     before = span.source.text[max(0, span.start - 16) : span.start].split()[-1:]
     word = fold(span.text)
-    return before == ["and"] and bool({word, *plain_forms(word)} & VERBS)
+    return before == ["and"] and word not in VERBS and bool({*plain_forms(word)} & VERBS)
 
 
 def _is_slip(wrong: Diagnostic, actions: Collection[str], things: Collection[str]) -> bool:

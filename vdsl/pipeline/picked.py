@@ -43,7 +43,8 @@ def picked(script: Path, build: Path | None = None) -> list[Picked]:
     """The shots of a script that somebody chose a take for.
 
     build: its folder, None for ``build/NAME`` where one is, beside the script or here. Raises
-    :class:`RankerError` where there are choices but no build, ScriptError for a lock that does not read.
+    :class:`RankerError` where there are choices but no build with several takes, ScriptError for a lock that
+    does not read.
     """
     lock = read_lock(lock_path(script))
     if not lock.choices:
@@ -59,9 +60,12 @@ def picked(script: Path, build: Path | None = None) -> list[Picked]:
         ]
     except FileNotFoundError as error:
         raise RankerError(f"{folder}: has no takes of {script}; compile it first") from error
-    except (ValueError, KeyError, TypeError) as error:
+    except (ValueError, KeyError, TypeError, AttributeError) as error:
         raise RankerError(f"{folder}: is no build of this version; compile {script} again") from error
-    return [shot for shot in found if shot is not None]
+    some = [shot for shot in found if shot is not None]
+    if not some:
+        raise RankerError(f"{folder}: has no other takes beside those chosen; compile {script} whole first")
+    return some
 
 
 def picked_of(folder: Path, shot: str, takes: list[Mapping[str, Any]], key: str) -> Picked | None:
@@ -80,7 +84,7 @@ def _traits(folder: Path, take: Mapping[str, Any]) -> NDArray[np.float64]:
 
 
 def _odds(take: Mapping[str, Any]) -> float:
-    logit = take["logit"]
+    logit, _ = take["logit"], take["taste"]  # older builds, without a taste, have it in the first
     return 0.0 if logit is None else float(logit) + prior(_measures(take))
 
 

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -27,24 +26,11 @@ from ..emit.video import take_paths
 from ..lang.words import CAMERA_WORDS
 from .filming import SEGMENTS, segment_frames
 from .labels import WORDS, classes
-from .picked import Picked, picked
+from .picked import picked
 
 FILMS = (".mp4", ".mov", ".m4v")
 #: Every so many folders (or scripts), one is for testing: those whose digest says so.
 _TEST_SHARE = 0.15
-
-
-@dataclass(frozen=True, eq=False)
-class Preference:
-    """A shot whose take somebody chose. frames: uint8 [T, 8, S, S, 3] of its takes; chosen: which of them
-
-    words: movement, size and angle of every take
-    """
-
-    shot: str
-    frames: NDArray[np.uint8]
-    chosen: int
-    words: tuple[tuple[str, str, str], ...]
 
 
 def clip_of(path: Path, size: int = 224) -> NDArray[np.uint8]:
@@ -129,13 +115,14 @@ def add_picks(folder: Path, scripts: list[Path], made: dict[str, Any], size: int
         added = 0
         for script in scripts:
             group = f"script {script.name}"
-            for liked in preferences(script, size):
-                name = f"{script.name} {liked.shot}"
+            for shot in picked(script):
+                name, take = f"{script.name} {shot.id}", shot.takes[shot.chosen]
                 if name in known:
                     continue
                 about = {"kind": "picked", "file": name}
-                labels = classes(*liked.words[liked.chosen])
-                writer.add(liked.frames[liked.chosen], True, *labels, group, 0.0, _side(group), about)
+                labels = classes(take["movement"], take["scale"], take["angle"])
+                film = clip_of(take_paths(shot.build, shot.id, take["rank"])[0], size)
+                writer.add(film, True, *labels, group, 0.0, _side(group), about)
                 added += 1
         return added
 
@@ -144,22 +131,6 @@ def _writer(folder: Path, made: dict[str, Any], size: int) -> ShardWriter:
     """Goes on with a set, however it is made: films are the same to all."""
     there = made_of(folder)
     return ShardWriter(folder, WORDS, (size, size), SEGMENTS, shard=64, made=there or made)
-
-
-def preferences(script: Path, size: int = 224, build: Path | None = None) -> list[Preference]:
-    """The shots of a script that somebody chose a take for, with the films of all takes of its build.
-
-    As :func:`vdsl.pipeline.picked.picked`; raises :class:`RankerError` for a draft, which has no films, too.
-    """
-    return [_preference(shot, size) for shot in picked(script, build)]
-
-
-def _preference(shot: Picked, size: int) -> Preference:
-    if any(take["video"] is None for take in shot.takes):
-        raise RankerError(f"{shot.build}: is a draft, which has no films; compile it whole first")
-    films = [take_paths(shot.build, shot.id, take["rank"])[0] for take in shot.takes]
-    words = tuple((str(t["movement"]), str(t["scale"]), str(t["angle"])) for t in shot.takes)
-    return Preference(shot.id, np.stack([clip_of(film, size) for film in films]), shot.chosen, words)
 
 
 def _side(group: str) -> str:

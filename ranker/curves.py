@@ -10,7 +10,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-_WIDTH, _HEIGHT, _LEFT, _TOP, _GAP = 640, 200, 52, 28, 56
+_WIDTH, _HEIGHT, _LEFT, _RIGHT, _TOP, _GAP = 640, 200, 52, 190, 28, 56
 _COLORS = ("#0f766e", "#b45309", "#6d28d9", "#be123c", "#475569", "#1d4ed8")
 _LOSSES = ("loss", "binary", "class", "contrast", "hint", "order")
 
@@ -43,7 +43,7 @@ def curves_svg(epochs: Sequence[Mapping[str, Any]]) -> str:
     top = max((v for points in losses.values() for _, v in points), default=1.0) or 1.0
     height = 2 * (_HEIGHT + _GAP) + _TOP
     parts = [
-        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {_WIDTH + _LEFT + 130} {height}" '
+        f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {_LEFT + _WIDTH + _RIGHT} {height}" '
         'font-family="sans-serif" font-size="12" fill="currentColor">',
         "<style>svg{color:#1f2937;background:#fff}@media(prefers-color-scheme:dark)"
         "{svg{color:#e5e7eb;background:#111827}}</style>",

@@ -105,6 +105,9 @@ def test_curves_are_drawn_of_every_epoch_once(tmp_path: Path) -> None:
     drawing = ElementTree.parse(tmp_path / "curves.svg").getroot()
     curves = [e.attrib["points"].split() for e in drawing.iter() if e.tag.endswith("polyline")]
     assert [len(points) for points in curves] == [3, 3, 3, 3, 3]
+    width = float(drawing.attrib["viewBox"].split()[2])
+    for label in (e for e in drawing.iter() if e.tag.endswith("text") and "text-anchor" not in e.attrib):
+        assert float(label.attrib["x"]) + 7.5 * len(label.text or "") < width, label.text
     said = "".join(drawing.itertext())
     assert "professional 0.8" in said
     assert "hint" in said

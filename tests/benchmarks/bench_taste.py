@@ -1,9 +1,10 @@
 """What few choices by one rule teach: in the film they were made in, and in another.
 
-``python -m tests.benchmarks.bench_taste BUILD OTHER`` takes two builds with some takes a shot. For each rule
-(the lowest camera, the longest lens, …) somebody chooses the take of every shot of BUILD that goes furthest
-by it; told is how often that take comes first before and after, and how far what comes first in OTHER goes
-by the rule among all its takes (1 the furthest).
+``python -m tests.benchmarks.bench_taste BUILD OTHER`` takes two builds with some takes a shot, as of
+``taste_own.vds`` and ``taste_other.vds`` beside. For each rule (the lowest camera, the longest lens, …)
+somebody chooses the take of every shot of BUILD that goes furthest by it; told is how often that take comes
+first before and after, and how far what comes first in OTHER goes by the rule among all its takes (1 the
+furthest).
 """
 
 from __future__ import annotations

@@ -46,10 +46,8 @@ _FURTHER = {
     "slant": Trait(10.0, "a camera that is not level", "a level camera"),
     "closeness": Trait(1.5, "closer sizes", "wider sizes"),  # sizes
     "focal": Trait(0.3, "longer lenses", "wider lenses"),  # log of millimetres
-    "speed": Trait(0.3, "a camera that goes fast", "a camera that hardly goes"),  # log of 1 + metres a second
-    "turning": Trait(
-        0.5, "a camera that turns fast", "a camera that hardly turns"
-    ),  # log of 1 + 10 degrees a second
+    "speed": Trait(0.3, "a camera that goes fast", "a camera that hardly goes"),  # log of 1 + m/s
+    "turning": Trait(0.5, "a camera that turns fast", "a camera that hardly turns"),  # of 1 + 10 °/s
 }
 _MOVEMENTS = (
     *("static", "follow", "push", "pull", "zoom", "tilt", "pan", "dolly", "pedestal", "arc", "crane", "roll"),

@@ -1,9 +1,9 @@
 """What a writer's choices teach the discriminator, kept in the project as ``vds.taste``.
 
 Assumes scripts with a lock and a build that holds the chosen takes and the others; no film is looked at.
-What is learnt is why somebody chose another take than ``compile`` would have: it starts
-from the scores of the build, without what an earlier taste added. Guarantees that without such a file
-nothing is other than without choices.
+What is learnt is why somebody chose another take than ``compile`` would have: it starts from the scores of
+the build, without what an earlier taste added. Guarantees that without such a file nothing is other than
+without choices.
 """
 
 from __future__ import annotations

@@ -8,6 +8,7 @@ that a label of movement, size or angle is what the track itself reads as.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -83,35 +84,56 @@ def clips_of(scene: Scene, rng: np.random.Generator) -> list[Clip]:
     proposals as well, and of every pick two takes that are spoilt, all bare."""
     out: list[Clip] = []
     for shot, grid in zip(scene.shots, scene.grids, strict=True):
-        opinion = judged(grid.cameras)
-        kept = [i for i in picks(grid.cameras, _PICKS) if opinion[i] >= BAR]
-        left = [i for i in rng.permutation(len(grid.cameras)) if opinion[i] < BAR * (1 - _LOST)]
-        made: list[Clip] = []
-        for i in kept:
-            good = grid.cameras[i]
-            if left and rng.random() < _PASSED_OVER:
-                worse = grid.cameras[left[0]]
-                bad: Clip | None = _proposed(scene, shot, grid, worse, float(opinion[left[0]]))
-                left = left[1:]
-            else:
-                bad = _spoilt(scene, shot, grid, good, float(opinion[i]), rng)
-            if bad is not None:
-                words = _read(scene, shot, grid, good)
-                made += [Clip(good, "designer", 0.0, float(opinion[i]), words), bad]
-            for kind in _KINDS if scene.split == "train" else ():
-                more = _spoilt(scene, shot, grid, good, float(opinion[i]), rng, kind)
-                made += [] if more is None else [replace(more, bare=True)]
-        shown = {id(clip.camera) for clip in made}
-        for camera, thought in zip(grid.cameras, opinion, strict=True):
-            if id(camera) not in shown and scene.split == "train":
-                made.append(replace(_proposed(scene, shot, grid, camera, float(thought)), bare=True))
+        made = _made(scene, shot, grid, rng)
         about = about_of(shot, grid, scene.filming, scene.staged)
+        subjects = [subject_of(shot, story, scene.filming) for story in grid.story]
         for clip in made:
             story = grid.story[clip.camera.story]
-            subject, at = subject_of(shot, story, scene.filming), segment_frames(story.frames)
-            told = frame_hints_of(clip.camera, subject, at)
+            at = segment_frames(story.frames)
+            told = frame_hints_of(clip.camera, subjects[clip.camera.story], at)
             out.append(replace(clip, frames=told, meant=meant(clip.camera, at), about=about, shot=shot))
     return out
+
+
+def _made(scene: Scene, shot: Shot, grid: ProposalGrid, rng: np.random.Generator) -> list[Clip]:
+    """The clips of a shot. All that is left to chance is drawn first, so that what has to be measured is
+    measured together."""
+    opinion = judged(grid.cameras)
+    kept = [i for i in picks(grid.cameras, _PICKS) if opinion[i] >= BAR]
+    left = [i for i in rng.permutation(len(grid.cameras)) if opinion[i] < BAR * (1 - _LOST)]
+    passed_over: dict[int, int] = {}  # in place of a spoilt one, by the pick it stands beside
+    attempts: list[_Attempts] = []
+    for i in kept:
+        good = grid.cameras[i]
+        if left and rng.random() < _PASSED_OVER:
+            passed_over[i] = left[0]
+            left = left[1:]
+        else:
+            attempts.append(_attempts(i, good, float(opinion[i]), rng))
+        for kind in _KINDS if scene.split == "train" else ():
+            attempts.append(_attempts(i, good, float(opinion[i]), rng, kind, bare=True))
+    spoilt: dict[int, list[Clip]] = {i: [] for i in kept}
+    beside: dict[int, Clip] = {}
+    for tried, clip in zip(attempts, _spoilt(scene, shot, grid, attempts), strict=True):
+        if clip is not None and tried.bare:
+            spoilt[tried.pick].append(replace(clip, bare=True))
+        elif clip is not None:
+            beside[tried.pick] = clip
+    made: list[Clip] = []
+    for i in kept:
+        good = grid.cameras[i]
+        if i in passed_over:
+            k = passed_over[i]
+            beside[i] = _proposed(scene, shot, grid, grid.cameras[k], float(opinion[k]))
+        if i in beside:
+            words = _read(scene, shot, grid, good)
+            made += [Clip(good, "designer", 0.0, float(opinion[i]), words), beside[i]]
+        made += spoilt[i]
+    shown = {id(clip.camera) for clip in made}
+    for camera, thought in zip(grid.cameras, opinion, strict=True):
+        if id(camera) not in shown and scene.split == "train":
+            made.append(replace(_proposed(scene, shot, grid, camera, float(thought)), bare=True))
+    return made
 
 
 def as_seen(clip: Clip, camera: CameraProposal) -> Clip:
@@ -143,17 +165,32 @@ def _seen(camera: CameraProposal, opinion: float) -> bool:
     return opinion >= 0 or any(bool(found) for found in flaws(camera.measures, seen=True).values())
 
 
-def _spoilt(
-    scene: Scene,
-    shot: Shot,
-    grid: ProposalGrid,
+@dataclass(frozen=True, eq=False)
+class _Attempts:
+    """A good take spoilt in ways that are tried one after the other.
+
+    pick: index of the good one; least: opinion from which on it is not worse; bare: whether its guides are
+    enough
+    """
+
+    pick: int
+    good: CameraProposal
+    kind: str
+    least: float
+    strengths: list[float]
+    tracks: list[CameraTrack]
+    bare: bool
+
+
+def _attempts(
+    pick: int,
     good: CameraProposal,
     appeal: float,
     rng: np.random.Generator,
     kind: str = "",
-) -> Clip | None:
-    """A worse take made of a good one, of a kind or of any; None where nothing that was tried made it
-    worse."""
+    bare: bool = False,
+) -> _Attempts:
+    """Ways to spoil a good take, of a kind or of any."""
     kind = kind or _KINDS[int(rng.random() < _MISTYPED)]
     if kind == "mistyped":
         strengths = [_MISTYPED_STRENGTH] * len(_TRIES)
@@ -162,17 +199,42 @@ def _spoilt(
         drawn = float(rng.uniform(0.1, 1.0))
         strengths = [max(drawn, least) for least in _TRIES]
         tracks = [perturbed(good.track, strength, rng) for strength in strengths]
-    tried = [replace(good, track=track) for track in tracks]
-    tried = measured_anew(shot, grid.story[good.story], scene.filming, tried)
-    least = min(BAR, (1.0 - _LOST) * appeal)
-    for camera, strength, thought in zip(tried, strengths, judged(tried), strict=True):
-        words = _read(scene, shot, grid, camera)
-        lost = [asked and not shown for asked, shown in zip(_asked(good), words, strict=True)]
-        if thought < least or any(lost):
-            known = (None, None, None) if kind == "mistyped" else words
-            doubtful = not any(lost) and not _seen(camera, thought)
-            return Clip(camera, kind, strength, float(thought), known, doubtful=doubtful)
-    return None
+    return _Attempts(pick, good, kind, min(BAR, (1.0 - _LOST) * appeal), strengths, tracks, bare)
+
+
+def _spoilt(scene: Scene, shot: Shot, grid: ProposalGrid, attempts: Sequence[_Attempts]) -> list[Clip | None]:
+    """Of each the first that is worse; None where nothing that was tried made it worse. What is tried at a
+    time of takes of one performance is measured together."""
+    found: list[Clip | None] = [None] * len(attempts)
+    open_ = list(range(len(attempts)))
+    for turn in range(len(_TRIES)):
+        for story in sorted({attempts[k].good.story for k in open_}):
+            some = [k for k in open_ if attempts[k].good.story == story]
+            tried = [replace(attempts[k].good, track=attempts[k].tracks[turn]) for k in some]
+            tried = measured_anew(shot, grid.story[story], scene.filming, tried)
+            for k, camera, thought in zip(some, tried, judged(tried), strict=True):
+                found[k] = _worse(scene, shot, grid, attempts[k], turn, camera, float(thought))
+        open_ = [k for k in open_ if found[k] is None]
+    return found
+
+
+def _worse(
+    scene: Scene,
+    shot: Shot,
+    grid: ProposalGrid,
+    attempts: _Attempts,
+    turn: int,
+    camera: CameraProposal,
+    thought: float,
+) -> Clip | None:
+    """A spoilt take where it is worse than the good one: by the designer, or it lost what was asked."""
+    words = _read(scene, shot, grid, camera)
+    lost = any(asked and not shown for asked, shown in zip(_asked(attempts.good), words, strict=True))
+    if thought >= attempts.least and not lost:
+        return None
+    known = (None, None, None) if attempts.kind == "mistyped" else words
+    doubtful = not lost and not _seen(camera, thought)
+    return Clip(camera, attempts.kind, attempts.strengths[turn], thought, known, doubtful=doubtful)
 
 
 def _asked(camera: CameraProposal) -> Words:

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -130,6 +131,23 @@ class Solids:
     yaw: NDArray[np.float64]
     wall: NDArray[np.int32]
     object: NDArray[np.int32]
+
+    @cached_property
+    def turn(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Cosine and sine of the yaw, [B] each."""
+        return np.cos(self.yaw), np.sin(self.yaw)
+
+    @cached_property
+    def radius(self) -> NDArray[np.float64]:
+        """Of the spheres around the boxes, [B]."""
+        return np.asarray(np.sqrt((self.half**2).sum(axis=1)))
+
+    @cached_property
+    def bounds(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Least and greatest corner, [B, 3] each, of the boxes turned any way about Z."""
+        half = self.half.copy()
+        half[:, :2] = np.sqrt((half[:, :2] ** 2).sum(axis=1))[:, None]
+        return self.centre - half, self.centre + half
 
 
 @dataclass(frozen=True)

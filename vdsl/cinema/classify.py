@@ -18,20 +18,20 @@ def achieved_size(track: CameraTrack, subject: Subject, frame: int, paper: bool 
     """The scale whose framing of the posed body comes closest at a frame; unbatched track."""
     axes = camera_axes(track.rotation[frame])
     eye, focal = track.position[frame], np.asarray(track.focal[frame])
-    _, depth = project(subject.landmarks["pocket"][frame][None], eye, axes, focal, track.sensor)
-    view = max(float(depth[0]), 0.01) * track.sensor[1] / float(focal)
-    best, least = "medium", np.inf
-    for scale in PAPER_RADIUS if paper else SIZES:
-        if paper:
-            error = abs(np.log(view / (PAPER_RADIUS[scale] * subject.height)))
-        else:
-            size = size_of(subject.kind, scale)
-            upper, lower = subject.landmarks[size.upper][frame], subject.landmarks[size.lower][frame]
-            filled = float(stretch(upper, lower, eye, axes, focal, track.sensor))
-            error = abs(np.log(max(filled, 1e-4) / size.share))
-        if error < least:
-            best, least = scale, error
-    return best
+    if paper:
+        scales = tuple(PAPER_RADIUS)
+        _, depth = project(subject.landmarks["pocket"][frame][None], eye, axes, focal, track.sensor)
+        filled = np.maximum(depth, 0.01) * track.sensor[1] / focal
+        asked = np.array(list(PAPER_RADIUS.values())) * subject.height
+    else:
+        scales, sizes = tuple(SIZES), [size_of(subject.kind, scale) for scale in SIZES]
+        upper, lower = (
+            np.array([subject.landmarks[getattr(size, end)][frame] for size in sizes])
+            for end in ("upper", "lower")
+        )
+        filled = np.maximum(stretch(upper, lower, eye, axes, focal, track.sensor), 1e-4)
+        asked = np.array([size.share for size in sizes])
+    return scales[int(np.abs(np.log(filled / asked)).argmin())]
 
 
 def achieved_angles(track: CameraTrack, subject: Subject, frame: int) -> tuple[str, ...]:

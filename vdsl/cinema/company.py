@@ -109,9 +109,12 @@ def _beside_it(
     if not body.any():
         return body, head, np.zeros(far.shape), far
     aside = _SIDE * axes[:, :, None, 0]  # to the picture's right
-    sides = looks.clear(points[None, :, 3:4] + np.concatenate([-aside, aside], axis=2), people=False)
-    body &= looks.clear(points[:, 3:], people=False).any(axis=2) | sides.any(axis=2)
-    head &= looks.shown((one.name,), points[:, None, :2], people=False)[:, :, 0].any(axis=2)
+    beside = points[None, :, 3:4] + np.concatenate([-aside, aside], axis=2)
+    middle = np.broadcast_to(points[None, :, 3:], beside.shape)
+    trunk = looks.clear(np.concatenate([beside, middle], axis=2), people=False)
+    body &= trunk.any(axis=2)
+    sides = trunk[:, :, :2]
+    head &= looks.shown((one.name,), points[:, None, :2], people=0)[:, :, 0].any(axis=2)
     if not looks.by_pictures:
         head &= ~behind_own_back(one, at, camera)
     split = np.maximum(_halved(xy[:, :, 3, 0], TRUNK * wide), sides[..., 0] != sides[..., 1])
@@ -161,7 +164,7 @@ def company_shown(
     eyes = np.stack([one.landmarks["eyes"][at] for one in people], axis=1)
     xy, depth = project(eyes[None], camera, axes, focal, takes.track.sensor)
     names = tuple(one.name for one in people)
-    seen = within(xy, depth, _EDGE) & looks.shown(names, eyes[:, :, None], people=False)[..., 0]
+    seen = within(xy, depth, _EDGE) & looks.shown(names, eyes[:, :, None], people=0)[..., 0]
     if not looks.by_pictures:
         seen &= ~behind_heads(crowd.eyes, depth, crowd.feet)
         seen &= ~np.stack([behind_own_back(one, at, camera) for one in people], axis=-1)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -90,3 +92,45 @@ def solve(
         r = np.where(flat, tall / (lines[1] - lines[0]) * focal / sensor[1], r)
         aim = np.where(flat[..., None], (upper + lower) / 2, aim)
     return r, aim
+
+
+def risen(
+    upper: Array,
+    lower: Array,
+    across: Array,
+    phi: Array,
+    focal: Array,
+    sensor: tuple[float, float],
+    lines: tuple[Array, Array, Array],
+    roll: float | Array = 0.0,
+) -> Callable[[Array], Array]:
+    """How high [P] a camera is that :func:`solve` finds for polar angles [P]. Arguments as there.
+
+    Who looks for the angle of a height asks a dozen times. With S and C its sine and cosine, and of a vector
+    a its part towards the camera on the floor plan, b that to the picture's right and z its height, ``up`` is
+    S z − C a and ``back`` S a + C z: what does not depend on the angle is worked out once.
+    """
+    cos, sin, lean, level = np.cos(phi), np.sin(phi), np.sin(roll), np.cos(roll)
+    y_top, y_bottom, x = 1.0 - 2.0 * lines[0], 1.0 - 2.0 * lines[1], 2.0 * lines[2] - 1.0
+    ky, kx = 2.0 * focal / sensor[1], 2.0 * focal / sensor[0]
+
+    def parts(v: Array) -> tuple[Array, Array, Array]:
+        return cos * v[..., 0] + sin * v[..., 1], cos * v[..., 1] - sin * v[..., 0], v[..., 2]
+
+    drop = lower - upper
+    (a, b, z), (side_a, side_b, side_z) = parts(drop), parts(across - upper)
+    tall = length(drop)
+    lying = tall / (lines[1] - lines[0]) * focal / sensor[1]
+
+    def height(theta: Array) -> Array:
+        s, c = np.sin(theta), np.cos(theta)
+        low_up = lean * b + level * (s * z - c * a)
+        r = (-ky * low_up - y_bottom * (s * a + c * z)) / (y_top - y_bottom)
+        lift = -y_top * r / ky
+        right = level * side_b - lean * (s * side_z - c * side_a)
+        shift = right - x * (r - s * side_a - c * side_z) / kx
+        stands = upper[..., 2] + (lift * level - shift * lean) * s + r * c
+        lies = (upper[..., 2] + lower[..., 2]) / 2 + lying * c
+        return np.asarray(np.where(-low_up < FLAT * tall, lies, stands))
+
+    return height

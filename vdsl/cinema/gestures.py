@@ -6,6 +6,8 @@ Assumes landmarks of a posed body. Hands that hang or swing beside it do nothing
 
 from __future__ import annotations
 
+from functools import lru_cache
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -129,25 +131,33 @@ def face_covered(takes: Takes, subject: Subject, at: NDArray[np.int64], camera: 
     """
     if subject.arms is None:
         return np.zeros(len(camera))
-    arms, face = subject.arms[at], subject.face[at]
+    hidden = _face_hidden(subject, at, camera).mean(axis=-1)
+    return mean_of(np.maximum(hidden - _least_hidden(subject, tuple(at.tolist())), 0.0), takes.window)
+
+
+def _face_hidden(subject: Subject, at: NDArray[np.int64], camera: Array) -> Bools:
+    """Which of eyes and nose are hidden from cameras [P, F, 3], [P, F, 2]."""
+    assert subject.arms is not None
+    face = subject.face[at]
     points = np.stack([subject.landmarks[name][at] for name in ("eyes", "nose")], axis=1)
+    behind = _behind_arms(camera, points, subject.arms[at], subject.height)
+    chest = subject.landmarks["waist"][at], subject.landmarks["pocket"][at]
+    behind |= _behind_chest(camera, points, face, *chest, subject.height)
+    for box in subject.in_hand:
+        behind |= box.before(at, camera, points, _SKIN)
+    return behind
+
+
+@lru_cache(maxsize=64)  # asked for again for every few cameras
+def _least_hidden(subject: Subject, frames: tuple[int, ...]) -> Array:
+    """The least share of a face that is hidden from anywhere before it, [F]; not to be written to."""
+    at = np.array(frames)
+    face = subject.face[at]
     cos, sin = np.cos(_AROUND)[:, None], np.sin(_AROUND)[:, None]
     around = [cos * face[:, 0] - sin * face[:, 1], sin * face[:, 0] + cos * face[:, 1]]
     level = np.stack([*around, np.broadcast_to(face[:, 2], around[0].shape)], axis=-1)
-    before = points[:, 0] + _AWAY * level
-
-    chest = subject.landmarks["waist"][at], subject.landmarks["pocket"][at]
-
-    def hidden_from(camera: Array) -> Array:
-        behind = _behind_arms(camera, points, arms, subject.height)
-        behind |= _behind_chest(camera, points, face, *chest, subject.height)
-        for box in subject.in_hand:
-            behind |= box.before(at, camera, points, _SKIN)
-        return np.asarray(behind.mean(axis=-1))
-
-    least = hidden_from(before).min(axis=0)  # [F]
-    hidden = hidden_from(camera)
-    return mean_of(np.maximum(hidden - least, 0.0), takes.window)
+    before = subject.landmarks["eyes"][at] + _AWAY * level
+    return np.asarray(_face_hidden(subject, at, before).mean(axis=-1).min(axis=0))
 
 
 def _behind_arms(camera: Array, points: Array, arms: Array, height: float) -> Bools:

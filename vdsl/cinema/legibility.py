@@ -63,10 +63,7 @@ def legibility(
     here = np.ones((len(at), len(people)), bool)
     if not own:
         here = np.stack([subject.holds(one)[at] for one in people], axis=1)
-    sides = ((own, True), (subject.company, False))  # who hides these is asked below
-    there = np.concatenate(
-        [_marks(takes, some, at, camera, axes, looks, others) for some, others in sides if some], axis=2
-    )
+    there = _marks(takes, people, at, camera, axes, looks, len(own))  # who hides the company is asked below
     there &= here[..., None]
     crowd = crowd_of(takes, people, at, camera, axes)
     headless = np.zeros(there.shape[:3], bool)
@@ -103,16 +100,16 @@ def _marks(
     camera: Array,
     axes: Array,
     looks: Sight,
-    others: bool,
+    first: int,
 ) -> Bools:
-    """Which of the marks of people are in the frame, and seen, [P, F, K, marks]. others: whether anybody may
-    hide them of whom lines of sight know"""
+    """Which of the marks of people are in the frame, and seen, [P, F, K, marks]. first: how many of the
+    people others may hide of whom lines of sight know"""
     points = np.stack([one.landmarks[name][at] for one in people for name in _MARKS], axis=1)
     xy, depth = project(points[None], camera, axes, takes.track.focal[:, at], takes.track.sensor)
     inner = np.tile(np.isin(_MARKS, _HEAD), len(people))
     there = np.where(inner, within(xy, depth, _BORDER), within(xy, depth, 0.0))
     by_person = (len(at), len(people), len(_MARKS))
-    seen = looks.shown(tuple(one.name for one in people), points.reshape(*by_person, 3), others)
+    seen = looks.shown(tuple(one.name for one in people), points.reshape(*by_person, 3), first)
     return np.asarray(there.reshape(len(there), *by_person) & seen)
 
 

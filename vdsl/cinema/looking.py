@@ -36,14 +36,19 @@ class Sight(Protocol):
         but the subject: [P, F, K]. some: which of the frames they are of, all unless said"""
         ...
 
+    def clear_apart(self, points: Array) -> Bools:
+        """The same of points [F, K, 3] that lie far from each other, people and all."""
+        ...
+
     def clear_each(self, takes: NDArray[np.int64], frames: NDArray[np.int64], points: Array) -> Bools:
         """Which of points [N, 3], each of one take and one frame, nothing hides: [N]. Lines of sight know of
         walls and things alone."""
         ...
 
-    def shown(self, owners: tuple[str, ...], points: Array, people: bool) -> Bools:
+    def shown(self, owners: tuple[str, ...], points: Array, people: int) -> Bools:
         """Which of points of people, [F, owners, K, 3], are seen: [P, F, owners, K]. Where pictures tell,
-        nobody else hides them nor the own body; else as :meth:`clear`."""
+        nobody else hides them nor the own body; else as :meth:`clear`, with people for the first so many of
+        the owners."""
         ...
 
     @property
@@ -74,9 +79,25 @@ class Lines:
         eye, lines = self.camera[takes, frames][:, None], points[:, None, None]
         return clear_lines(self.solids, eye, lines, self.hidden[takes], self.ignore)[:, 0, 0]
 
-    def shown(self, owners: tuple[str, ...], points: Array, people: bool) -> Bools:
-        flat = self.clear(points.reshape(len(points), -1, 3), people)
-        return flat.reshape(len(flat), *points.shape[:3])
+    def clear_apart(self, points: Array) -> Bools:
+        seen = self._by_groups(points[:, :, None])[..., 0]
+        return np.asarray(seen & clear_of_people(self.camera, points, self.others))
+
+    def shown(self, owners: tuple[str, ...], points: Array, people: int) -> Bools:
+        seen = self._by_groups(points)
+        if people:
+            first = points[:, :people].reshape(len(points), -1, 3)
+            passed = clear_of_people(self.camera, first, self.others)
+            seen[:, :, :people] &= passed.reshape(*passed.shape[:2], people, -1)
+        return seen
+
+    def _by_groups(self, points: Array) -> Bools:
+        """Which of points [F, G, K, 3] no wall or thing hides, [P, F, G, K]. What may be in the way is looked
+        for group by group: of points that lie close together it is little."""
+        groups = points.shape[1]
+        eye = np.repeat(self.camera, groups, axis=1)
+        seen = clear_lines(self.solids, eye, points.reshape(-1, *points.shape[2:]), self.hidden, self.ignore)
+        return seen.reshape(len(eye), *points.shape[:3])
 
 
 @dataclass(frozen=True, eq=False)
@@ -106,13 +127,16 @@ class Shown:
         others = [k for k, name in enumerate(self.pictures.people) if name not in self.own]
         return self._clear(rows, columns, xy, depth, others if people else [])
 
+    def clear_apart(self, points: Array) -> Bools:
+        return self.clear(points)
+
     def clear_each(self, takes: NDArray[np.int64], frames: NDArray[np.int64], points: Array) -> Bools:
         eye, axes, focal = (of[takes, frames] for of in (self.camera, self.axes, self.focal))
         xy, depth = project(points[:, None], eye, axes, focal, self.sensor)
         inside, _, near = self._at(takes[:, None], frames[:, None], xy, depth)
         return np.asarray(~(inside & (near < depth - _THING)))[:, 0]
 
-    def shown(self, owners: tuple[str, ...], points: Array, people: bool) -> Bools:
+    def shown(self, owners: tuple[str, ...], points: Array, people: int) -> Bools:
         out = []
         for k, name in enumerate(owners):
             xy, depth = project(points[None, :, k], self.camera, self.axes, self.focal, self.sensor)

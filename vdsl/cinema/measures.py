@@ -201,8 +201,7 @@ def _shown(
     if not takes.interest:
         return np.zeros((*camera.shape[:2], 0), bool)
     points = np.stack([path[at] for path in takes.interest], axis=1)
-    # they lie far apart: every one is looked at by itself
-    seen = np.concatenate([looks.clear(points[:, k : k + 1]) for k in range(points.shape[1])], axis=2)
+    seen = looks.clear_apart(points)
     xy, depth = project(points[None], camera, axes, takes.track.focal[:, at], takes.track.sensor)
     return within(xy, depth, 0.02) & seen
 
@@ -232,19 +231,21 @@ def _foreground(
         some = np.unique((np.arange(_LOOKED_AT) * ((len(at) - 1) / (_LOOKED_AT - 1))).round().astype(int))
     track = takes.track
     far = np.maximum(picture.depth[:, some, picture.names.index("pocket")], 0.2)
-    ax, blocked = axes[:, some, None], np.zeros((len(camera), len(some), len(across)))
-    for share, counts in _NEAR:
+    eye, ax = camera[:, some, None], axes[:, some, None]
+    ends = []
+    for share, _ in _NEAR:
         depth = share * far
         half = depth[..., None, None] / (2 * track.focal[:, at[some], None, None])
         points = (
-            camera[:, some, None]
+            eye
             + depth[..., None, None] * ax[..., 2, :]
             + half * track.sensor[0] * across[:, :1] * ax[..., 0, :]
             + half * track.sensor[1] * across[:, 1:] * ax[..., 1, :]
         )
-        if looks.by_pictures:
-            points = _above(floor, camera[:, some, None], points)
-        blocked = np.maximum(blocked, np.where(looks.clear(points, some=some), 0.0, counts))
+        ends.append(_above(floor, eye, points) if looks.by_pictures else points)
+    clear = looks.clear(np.concatenate(ends, axis=2), some=some)  # at once: they lie along the same lines
+    clear = clear.reshape(*clear.shape[:2], len(_NEAR), len(across))
+    blocked = np.where(clear, 0.0, np.array([counts for _, counts in _NEAR])[:, None]).max(axis=2)
     share = blocked.mean(axis=2)
     return np.asarray(np.maximum(share.mean(axis=1), ENDS_BEHIND * share[:, -1]))
 

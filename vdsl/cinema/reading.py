@@ -16,6 +16,7 @@ from scipy.ndimage import gaussian_filter1d
 from .moves import family
 from .subject import Subject
 from .track import CameraTrack, camera_axes
+from .vectors import dot, length
 
 Array = NDArray[np.float64]
 
@@ -136,9 +137,9 @@ def _filmed(position: Array, rotation: Array, subject: Subject) -> tuple[Array, 
     with a part of the subject that nearest to the optical axes which point at it."""
     ahead = camera_axes(rotation)[:, 2]
     marks = subject.landmarks
-    parts = [(marks[a] + marks[b]) / 2 for a, b in _PARTS]
-    misses = [_miss(position, ahead, part) for part in parts]
-    chosen = int(np.argmin([miss.min() for miss in misses]))
+    parts = np.stack([(marks[a] + marks[b]) / 2 for a, b in _PARTS])
+    misses = _miss(position, ahead, parts)
+    chosen = int(misses.min(axis=1).argmin())
     miss, trunk = misses[chosen], (marks["eyes"] + marks["waist"]) / 2
     path = np.column_stack([trunk[:, :2], parts[chosen][:, 2]])
     path[:, :2] += (parts[chosen] - trunk)[int(miss.argmin()), :2]  # a head turns faster than one goes
@@ -177,9 +178,9 @@ def _crossing(position: Array, ahead: Array, path: Array) -> Array | None:
 
 
 def _miss(position: Array, ahead: Array, path: Array) -> Array:
-    """Angle [T] between optical axis and direction to a point."""
+    """Angle [..., T] between optical axis and direction to points [..., T, 3]."""
     to = path - position
-    cosine = (to * ahead).sum(axis=1) / np.maximum(np.linalg.norm(to, axis=1), 1e-6)
+    cosine = dot(to, ahead) / np.maximum(length(to), 1e-6)
     return np.asarray(np.arccos(np.clip(cosine, -1.0, 1.0)))
 
 
@@ -306,8 +307,10 @@ def _goes_with(seen: _Seen) -> bool:
     best = np.inf
     for start in (0, -1):
         arm = seen.position[start] - seen.path[start]
-        gap = np.linalg.norm(seen.position[:, None] - (seen.path + arm)[None], axis=-1).min(axis=1)
-        best = min(best, float(gap.max()) / max(float(np.linalg.norm(arm)), 0.3))
+        own = seen.path + arm
+        square = dot(own, own) - 2.0 * seen.position @ own.T  # of the distance, but for what each place adds
+        gap = np.sqrt(np.maximum(square.min(axis=1) + dot(seen.position, seen.position), 0.0).max())
+        best = min(best, float(gap) / max(float(np.linalg.norm(arm)), 0.3))
     return best < 0.05
 
 

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from .framing import basis, direction, solve
+from .framing import basis, risen, solve
 from .moves import FLOOR_CLEARANCE
 from .sizes import Size
 from .subject import Subject
@@ -68,18 +68,11 @@ def frame(
     if size.lower in ("feet", "knees", "thigh"):
         across = (across + subject.landmarks["waist"][at] + lower) / 3
     ones = np.ones(len(theta))
-
-    def solved(polar: Array) -> tuple[Array, Array]:
-        right = basis(polar, phi)[0]
-        column = 0.5 - lead * dot(subject.face[at], right)
-        if aside is not None:
-            column = np.where(np.isnan(aside), column, aside)
-        lines = (size.top * ones, size.bottom * ones, column)
-        return solve(upper, lower, across, polar, phi, focal, film, lines, roll)
-
-    def height(polar: Array) -> Array:
-        r, aim = solved(polar)
-        return np.asarray((aim + r[:, None] * direction(polar, phi))[:, 2])
+    column = 0.5 - lead * dot(subject.face[at], basis(theta, phi)[0])  # whose right no angle turns
+    if aside is not None:
+        column = np.where(np.isnan(aside), column, aside)
+    lines = (size.top * ones, size.bottom * ones, column)
+    height = risen(upper, lower, across, phi, focal, film, lines, roll)
 
     asked, goal = theta, np.full(len(theta), FLOOR_CLEARANCE)
     under, over = theta, np.minimum(theta, np.pi / 2) - _RAISE
@@ -96,5 +89,5 @@ def frame(
         theta = np.where(loose, over, theta)
         if level is not None:
             asked = np.where(np.isnan(level), asked, theta)
-    r, aim = solved(theta)
+    r, aim = solve(upper, lower, across, theta, phi, focal, film, lines, roll)
     return Framing(r, theta, aim - path[at], np.abs(asked - theta))

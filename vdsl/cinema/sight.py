@@ -92,7 +92,7 @@ def _meetings(low: Array, high: Array, origin: Array, rays: Array) -> Array:
 def distances(solids: Solids, points: Array) -> Array:
     """Distance [N, B] from points [N, 3] to every box, negative inside."""
     d = points[:, None, :] - solids.centre
-    c, s = np.cos(solids.yaw), np.sin(solids.yaw)
+    c, s = solids.turn
     local = np.stack([c * d[..., 0] + s * d[..., 1], c * d[..., 1] - s * d[..., 0], d[..., 2]], axis=-1)
     q = np.abs(local) - solids.half
     outside = np.linalg.norm(np.maximum(q, 0.0), axis=-1)
@@ -139,9 +139,8 @@ def _between(solids: Solids, eye: Array, points: Array, ignore: int | None) -> N
         return np.zeros(0, np.int64)
     low = np.minimum(eye.min(axis=0), points.min(axis=(0, 1)))
     high = np.maximum(eye.max(axis=0), points.max(axis=(0, 1)))
-    half = solids.half.copy()
-    half[:, :2] = length(solids.half[:, :2])[:, None]
-    inside = ((solids.centre + half > low) & (solids.centre - half < high)).all(axis=1)
+    least, most = solids.bounds
+    inside = ((most > low) & (least < high)).all(axis=1)
     if ignore is not None:
         inside &= solids.object != ignore
     return np.flatnonzero(inside)
@@ -162,7 +161,7 @@ def _near(solids: Solids, boxes: NDArray[np.int64], eye: Array, ray: Array, spre
         gap -= t * along[:, k, None]
         gap *= gap
         away += gap
-    reach = length(solids.half[boxes]) + spread[:, None]
+    reach = solids.radius[boxes] + spread[:, None]
     return np.asarray(away < (reach * reach).astype(np.float32))
 
 
@@ -178,7 +177,7 @@ def _bounds(points: Array) -> tuple[Array, Array]:
 def _meets(solids: Solids, box: NDArray[np.int64], camera: Array, ray: Array, spread: Array) -> Bools:
     """Whether the line from camera m along its ray, to the middle of its points, meets box m grown by their
     spread: only then one of its lines may cut the box. [M, 3], [M, 3], [M, 2] -> [M]."""
-    c, s = np.cos(solids.yaw)[box], np.sin(solids.yaw)[box]
+    c, s = (of[box] for of in solids.turn)
     half = solids.half[box] + spread[:, (0, 0, 1)]
     start = camera - solids.centre[box]
     enter, leave = np.zeros(len(box)), np.ones(len(box))
@@ -198,7 +197,7 @@ def _meets(solids: Solids, box: NDArray[np.int64], camera: Array, ray: Array, sp
 
 def _cut(solids: Solids, box: NDArray[np.int64], camera: Array, points: Array) -> Bools:
     """Whether box m cuts the lines from camera m to its points: [M, 3], [M, K, 3] -> [M, K]."""
-    c, s = np.cos(solids.yaw)[box, None], np.sin(solids.yaw)[box, None]
+    c, s = (of[box, None] for of in solids.turn)
     start, stop = camera - solids.centre[box], points - solids.centre[box][:, None]
     origin = (c[:, 0] * start[:, 0] + s[:, 0] * start[:, 1], c[:, 0] * start[:, 1] - s[:, 0] * start[:, 0])
     end = (c * stop[..., 0] + s * stop[..., 1], c * stop[..., 1] - s * stop[..., 0], stop[..., 2])

@@ -55,14 +55,14 @@ def nearby(solids: Solids, camera: Array) -> Nearby:
     if not len(solids.centre) or not len(points):
         return Nearby(P, np.zeros(0, np.int64), np.zeros(0, np.int64), np.zeros(0))
     low, high = points.min(axis=0) - REACH, points.max(axis=0) + REACH
-    radius = length(solids.half)
+    radius = solids.radius
     kept = np.flatnonzero(
         ((solids.centre + radius[:, None] > low) & (solids.centre - radius[:, None] < high)).all(axis=1)
     )
     n, k = np.nonzero(_close(points, solids.centre[kept], radius[kept] + REACH))
     b = kept[k]
     d = points[n] - solids.centre[b]
-    c, s = np.cos(solids.yaw)[b], np.sin(solids.yaw)[b]
+    c, s = (of[b] for of in solids.turn)
     half = solids.half[b]
     x = np.abs(c * d[:, 0] + s * d[:, 1]) - half[:, 0]
     y = np.abs(c * d[:, 1] - s * d[:, 0]) - half[:, 1]

@@ -50,7 +50,7 @@ def everybody_seen(
     xy, depth = project(points[None], camera, axes, takes.track.focal[:, at], takes.track.sensor)
     seen = within(xy, depth, 0.03) & looks.clear(points)
     if looks.by_pictures:
-        seen &= looks.shown(tuple(subject.heads), points[:, :, None], people=True)[..., 0]
+        seen &= looks.shown(tuple(subject.heads), points[:, :, None], people=len(subject.heads))[..., 0]
     else:
         seen &= ~behind_heads(spread(xy, takes.track.focal[:, at], takes.track.sensor), depth)
     return _held(np.asarray(seen.all(axis=-1)), takes.window)
@@ -124,7 +124,7 @@ def _seen_among(
     """Which of somebody's points [F, K, 3] nothing hides, nor anybody, those they are filmed with among them,
     [P, F, K]."""
     if looks.by_pictures:
-        return np.asarray(looks.shown((one.name,), points[:, None], people=True)[:, :, 0])
+        return np.asarray(looks.shown((one.name,), points[:, None], people=1)[:, :, 0])
     bodies = [
         (foot[at], crown[at], radius)
         for other in members

@@ -53,8 +53,9 @@ class Filming:
         return (rig_paper if self.rig == "paper" else rig_cinema).sensor(self.aspect)
 
 
+@lru_cache(maxsize=64)  # asked for again for every few cameras
 def subject_of(shot: Shot, story: StoryProposal, filming: Filming) -> Subject:
-    """Whom or what the shot's cameras are about."""
+    """Whom or what the shot's cameras are about; its arrays are not to be written to."""
     subject = _subject(shot, story, filming)
     if subject.kind == "thing":
         return subject  # whose hands are beside it does not matter

@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .mesh import MATERIALS, Mesh
+from .rows import unique_rows
 
 #: Radians an edge may turn before it is drawn as a crease.
 CREASE = math.radians(40.0)
@@ -322,8 +323,7 @@ def _lumps(direction: NDArray[np.float64]) -> NDArray[np.float64]:
 
 def _smooth_normals(vertices: NDArray[np.float64], faces: NDArray[np.integer]) -> NDArray[np.float64]:
     """Area-weighted normals, shared by vertices in the same place."""
-    _, same = np.unique(np.round(vertices, 6), axis=0, return_inverse=True)
-    same = same.reshape(-1)
+    _, _, same = unique_rows(np.round(vertices, 6))
     corners = vertices[faces]
     flat = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     total = np.zeros((same.max() + 1, 3))

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from skimage.measure import marching_cubes
 
+from ..rows import unique_rows
 from .field import Field, Points, Values, gradient
 
 Faces = NDArray[np.int64]
@@ -204,8 +205,8 @@ def welded(parts: list[Patch]) -> Patch:
     counts = np.cumsum([0, *(len(part.vertices) for part in parts)])
     vertices = np.concatenate([part.vertices for part in parts])
     faces = np.concatenate([part.faces + n for part, n in zip(parts, counts[:-1], strict=True)])
-    _, first, index = np.unique(vertices, axis=0, return_index=True, return_inverse=True)
-    joined = Patch(vertices[first], index.reshape(-1)[faces])
+    _, first, index = unique_rows(vertices)
+    joined = Patch(vertices[first], index[faces])
     edges = boundary(joined)
     loose = np.unique(edges)
     on = {(p, q): found for p, q in edges.tolist() if len(found := _between(joined.vertices, (p, q), loose))}

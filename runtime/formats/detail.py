@@ -12,6 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csr_matrix, identity, vstack
 
+from runtime.rows import unique_rows
+
 from .model import Array
 from .textures import Pixels, sampled
 
@@ -70,8 +72,7 @@ def _split(
     [N, 2] that the new points lie between. Edges are one where they lie on each other, whatever their points.
     """
     grid = np.round(points / max(float(np.abs(points).max()), 1e-12) * 1e6)
-    _, place = np.unique(grid, axis=0, return_inverse=True)
-    place = place.reshape(-1).astype(np.int64)
+    _, _, place = unique_rows(grid)
     ends = np.stack([faces, np.roll(faces, -1, axis=1)], axis=-1)  # edge k from corner k to the next
     spot = np.sort(place[ends], axis=-1)
     key = spot[..., 0] * (int(place.max()) + 1) + spot[..., 1]

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from runtime.mesh import MATERIALS, Mesh, join
+from runtime.rows import unique_rows
 
 from .model import Array, Piece
 
@@ -40,8 +41,8 @@ def shell(vertices: Array, faces: NDArray[np.integer], most: int) -> Shell:
     """
     size = float(np.ptp(vertices, axis=0).max()) if len(vertices) else 1.0
     grid = np.round(vertices / max(size * 1e-5, 1e-9)).astype(np.int64)
-    _, first, inverse = np.unique(grid, axis=0, return_index=True, return_inverse=True)
-    welded = inverse.reshape(-1)[faces]
+    _, first, inverse = unique_rows(grid)
+    welded = inverse[faces]
     area = np.linalg.norm(_cross(vertices[first], welded), axis=1)
     sound = np.flatnonzero(area > 1e-14 * size**2)
     points, triangles, face_source, source = vertices[first], welded[sound], sound, first
@@ -89,9 +90,9 @@ def _with_normals(
     length = np.linalg.norm(total, axis=1, keepdims=True)
     normal = np.where(length > 1e-20, total / np.maximum(length, 1e-20), flat[of])
     key = np.concatenate([at[:, None], np.round(normal * 64).astype(np.int64)], axis=1)
-    _, first, inverse = np.unique(key, axis=0, return_index=True, return_inverse=True)
+    _, first, inverse = unique_rows(key)
     corners = np.empty(len(order), np.int64)
-    corners[order] = inverse.reshape(-1)
+    corners[order] = inverse
     used = at[first]
     return Shell(points[used], normal[first], corners.reshape(-1, 3), face_source, source[used])
 

@@ -20,6 +20,7 @@ from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
 from ..mesh import Mesh
+from ..rows import unique_rows
 from .finer import Skin, finer
 from .types import LOOSE, RenderScene
 
@@ -177,8 +178,7 @@ def _coarser(mesh: Mesh, own: NDArray[np.int64], share: float) -> tuple[NDArray[
     """
     corners, look = mesh.faces[own], _looks(mesh, own)
     # sharp edges are split vertices: weld them, or they would come apart
-    places, local = np.unique(mesh.vertices[corners.reshape(-1)], axis=0, return_inverse=True)
-    flat = local.reshape(-1)
+    places, _, flat = unique_rows(mesh.vertices[corners.reshape(-1)])
     local = flat.reshape(-1, 3)
     up = np.zeros((len(places), 3))
     np.add.at(up, flat, mesh.normals[corners.reshape(-1)])
@@ -223,8 +223,7 @@ def _coarser(mesh: Mesh, own: NDArray[np.int64], share: float) -> tuple[NDArray[
 def _looks(mesh: Mesh, own: NDArray[np.int64]) -> NDArray[np.int64]:
     """Which of some faces look alike: a number for each part, material and colour, [F]."""
     told = np.column_stack([mesh.parts[own], mesh.materials[own], mesh.colors[own]])
-    _, look = np.unique(told, axis=0, return_inverse=True)
-    return np.asarray(look.reshape(-1))
+    return unique_rows(told)[2]
 
 
 def _taken_after(

@@ -15,6 +15,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ..rows import unique_rows
+
 Index = NDArray[np.int64]
 Floats = NDArray[np.float32]
 
@@ -75,9 +77,8 @@ def _middles(place: Floats, normal: Floats, a: Index, b: Index) -> tuple[Floats,
     The same at every edge between two places, whichever vertices it has there: what is moved is the mean.
     """
     used = np.unique(np.concatenate([a, b]))
-    _, name = np.unique(place[used], axis=0, return_inverse=True)
     at = np.zeros(len(place), np.int64)
-    at[used] = name.reshape(-1)
+    at[used] = unique_rows(place[used])[2]
     low, high = np.minimum(at[a], at[b]), np.maximum(at[a], at[b])
     _, edge = np.unique(low * (int(at.max()) + 1) + high, return_inverse=True)
     edge = edge.reshape(-1)

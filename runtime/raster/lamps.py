@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..mesh import MATERIALS, Mesh
+from ..rows import unique_rows
 from .bake import Volume
 from .film import to_linear
 from .looks import LUMA
@@ -70,8 +71,7 @@ def find_lamps(
     low = np.full((int(owners.max()) + 1, 3), np.inf)
     np.minimum.at(low, owners, middle)
     cell = np.floor((middle - low[owners]) / ONE_LAMP).astype(int)
-    _, of = np.unique(np.column_stack([owners, cell]), axis=0, return_inverse=True)
-    of = of.reshape(-1)
+    _, _, of = unique_rows(np.column_stack([owners, cell]))
 
     def gathered(values: NDArray[np.float64]) -> NDArray[np.float64]:
         return np.stack([np.bincount(of, weights=values[:, k]) for k in range(3)], axis=1)

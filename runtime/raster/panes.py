@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..mesh import MATERIALS, Mesh
+from ..rows import unique_rows
 from .film import to_linear
 from .types import LOOSE, ONE_SIDED, RenderScene
 
@@ -120,9 +121,9 @@ def clear_faces(mesh: Mesh, owner: NDArray[np.int32]) -> Bools:
 def _panes(mesh: Mesh, owner: NDArray[np.int32]) -> list[NDArray[np.int64]]:
     """Faces of glass by object and part."""
     glass = np.flatnonzero(mesh.materials == _GLASS)
-    _, group = np.unique(np.stack([owner[glass], mesh.parts[glass]], axis=1), axis=0, return_inverse=True)
-    order = np.argsort(group.reshape(-1), kind="stable")
-    ends = np.flatnonzero(np.diff(group.reshape(-1)[order])) + 1
+    _, _, group = unique_rows(np.stack([owner[glass], mesh.parts[glass]], axis=1))
+    order = np.argsort(group, kind="stable")
+    ends = np.flatnonzero(np.diff(group[order])) + 1
     return [np.asarray(part, np.int64) for part in np.split(glass[order], ends)]
 
 

@@ -16,6 +16,7 @@ from scipy.sparse.csgraph import connected_components
 
 from ..materials import LAST, NIGHT_GLASS
 from ..mesh import MATERIALS, Mesh
+from ..rows import unique_rows
 from .bake import Volume, key_casters, stage_bounds
 from .density import density_volume
 from .detail import COUNT, Levels, with_levels
@@ -123,14 +124,13 @@ def closed_faces(mesh: Mesh, object_ids: NDArray[np.int32]) -> NDArray[np.bool_]
     count = len(mesh.faces)
     if not count:
         return np.zeros(0, np.bool_)
-    _, welded = np.unique(np.round(mesh.vertices / WELD).astype(np.int64), axis=0, return_inverse=True)
-    faces = welded.reshape(-1)[mesh.faces]
+    _, _, welded = unique_rows(np.round(mesh.vertices / WELD).astype(np.int64))
+    faces = welded[mesh.faces]
     start = faces[:, [0, 1, 2]].reshape(-1)
     end = faces[:, [1, 2, 0]].reshape(-1)
     owner = np.repeat(np.arange(count), 3)
     keys = np.stack([np.minimum(start, end), np.maximum(start, end), object_ids[owner]], axis=1)
-    _, edge = np.unique(keys, axis=0, return_inverse=True)
-    edge = edge.reshape(-1)
+    _, _, edge = unique_rows(keys)
     balance = np.bincount(edge, weights=np.where(start < end, 1.0, -1.0))
     real = start != end
     bad_face = np.zeros(count, np.bool_)
@@ -235,7 +235,7 @@ def prepare(scene: RenderScene, style: Style, on_host: bool = False) -> Prepared
     clear_part = np.isin(skinned.materials, panes) & (fitting > LOOSE)
     parts = np.concatenate([np.where(clear, -1, static.parts), np.where(clear_part, -1, skinned.parts)])
     moves = np.concatenate([np.zeros(len(order), int), (fitting <= LOOSE).astype(int)])
-    surfaces, surface = np.unique(np.stack([moves, object_ids, parts], axis=1), axis=0, return_inverse=True)
+    surfaces, _, surface = unique_rows(np.stack([moves, object_ids, parts], axis=1))
     if len(surfaces) >= 0xFFFF:
         raise ValueError(f"RenderScene: {len(surfaces)} parts of objects; 65534 is the most")
     flags = np.concatenate([_flat(static) * FLAT, _flat(skinned) * FLAT + MOVES]).astype(np.int32)
@@ -256,12 +256,12 @@ def prepare(scene: RenderScene, style: Style, on_host: bool = False) -> Prepared
         rest_normals=skinned.normals,
         faces=np.concatenate([static.faces, skinned.faces + np.int32(len(static.vertices))]).astype(np.int32),
         color=color.astype(np.float32),
-        info=np.stack([surface.reshape(-1), materials | (flags << SHIFT), wall], axis=1).astype(np.int32),
+        info=np.stack([surface, materials | (flags << SHIFT), wall], axis=1).astype(np.int32),
         clusters=np.concatenate([clusters, moving_clusters]).astype(np.int32),
         moving_first=len(clusters),
         sphere=spheres(static.vertices, static.faces, clusters),
         surface_object=surfaces[:, 1].astype(np.int32),
-        one_color=_one_color(color, surface.reshape(-1), len(surfaces)),
+        one_color=_one_color(color, surface, len(surfaces)),
         moving_surface=int((surfaces[:, 0] == 0).sum()),
         static_faces=len(order),
         set_casters=set_casters,

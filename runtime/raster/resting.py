@@ -12,6 +12,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ..rows import unique_rows
 from .detail import COUNT, Levels
 from .prepare import Prepared
 
@@ -58,8 +59,7 @@ class Rig:
         first = np.take_along_axis(joints, weights.argmax(axis=1)[:, None], axis=1) if len(joints) else joints
         used = np.sort(np.where(weights != 0, joints, first), axis=1)
         # few combinations of matrices move many vertices
-        self._kinds, kind = np.unique(used, axis=0, return_inverse=True)
-        self._kind = kind.reshape(-1)
+        self._kinds, _, self._kind = unique_rows(used)
         moving = scene.clusters[scene.moving_first :]
         count, self._clusters = int(self._kinds.shape[0]), len(moving)
         faces = scene.faces[scene.static_faces :] - np.int32(len(scene.vertices))
@@ -129,8 +129,8 @@ def needed(
     vertices are needed but those of the finest levels
     """
     flat = shown.reshape(len(shown), shown.shape[1] * COUNT)
-    patterns, which = np.unique(flat, axis=0, return_inverse=True)
+    patterns, _, which = unique_rows(flat)
     masks = np.stack([detail.used(p.reshape(-1, COUNT)) for p in patterns])
     if every:
         masks[:, : detail.vertices] = True
-    return masks, which.reshape(-1).astype(np.int32)
+    return masks, which.astype(np.int32)

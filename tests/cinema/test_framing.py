@@ -8,8 +8,10 @@ import numpy as np
 import pytest
 from filmset import shot, skeleton, standing, still_story, story, walking_story, world
 
+from vdsl.cinema import rig_cinema
+from vdsl.cinema.angles import CINEMA_THETA
 from vdsl.cinema.classify import achieved_angles, achieved_size
-from vdsl.cinema.framing import stretch
+from vdsl.cinema.framing import direction, risen, solve, stretch
 from vdsl.cinema.moves import FLOOR_CLEARANCE
 from vdsl.cinema.reading import read_movement
 from vdsl.cinema.sizes import SIZES
@@ -218,3 +220,19 @@ def test_headroom_is_asked_of_the_upright_and_the_middle_of_others(angle: str) -
     # as much too low as it is off the middle
     far = filmed(walking_story(skeleton(), metres=1.5), 1.7, movement="static", scale="wide", angle=angle)
     assert max(c.measures["headroom_error"] for c in far) > 0.02
+
+
+@pytest.mark.parametrize("roll", [0.0, 0.3])
+@pytest.mark.parametrize("angle", ["eye-level", "high-angle", "overhead"])
+def test_the_height_asked_for_while_halving_is_that_of_the_camera_found(angle: str, roll: float) -> None:
+    lot, count = np.random.default_rng(5), 40
+    upper = lot.normal((0.0, 0.0, 1.6), 0.4, (count, 3))
+    lower = upper - (0.0, 0.0, 0.7) + lot.normal(0.0, 0.4, (count, 3))  # some of them lie
+    across = upper + lot.normal(0.0, 0.2, (count, 3))
+    phi, focal = lot.uniform(-3.0, 3.0, count), lot.uniform(20.0, 90.0, count)
+    film, ones = rig_cinema.sensor(16 / 9), np.ones(count)
+    lines = (0.1 * ones, 0.9 * ones, lot.uniform(0.3, 0.7, count))
+    theta = CINEMA_THETA[angle] + lot.uniform(-0.2, 0.2, count)
+    r, aim = solve(upper, lower, across, theta, phi, focal, film, lines, roll)
+    found = risen(upper, lower, across, phi, focal, film, lines, roll)(theta)
+    np.testing.assert_allclose(found, (aim + r[:, None] * direction(theta, phi))[:, 2], atol=1e-12)

@@ -174,3 +174,21 @@ def test_one_look_by_lines_and_by_pictures_asks_of_the_same_places() -> None:
         assert looks.clear(points[None, :2], some=some).tolist() == [[[False, True]] * 2]
     away = np.tile(np.array([5.0, 0.0, 1.4]), (8, 1, 1))  # behind the camera nothing is hidden
     assert shown.clear(away).all()
+
+
+def test_points_looked_at_together_are_seen_as_those_looked_at_one_by_one() -> None:
+    lot = np.random.default_rng(7)
+    boxes = [(*lot.uniform(-3, 3, 2), 0.5, *lot.uniform(0.1, 0.6, 3), lot.uniform(0, 3)) for _ in range(40)]
+    frames, eye = 4, lot.uniform(-4, 4, (6, 4, 3)) * (1.0, 1.0, 0.3) + (0.0, 0.0, 1.2)
+    foot = np.tile([0.5, 0.5, 0.0], (frames, 1))
+    others = [(foot, np.tile([0.5, 0.5, 1.7], (frames, 1)), 0.25)]
+    looks = Lines(world(boxes=tuple(boxes)).solids, eye, np.zeros((6, 0), bool), others)
+    points = lot.uniform(-3, 3, (frames, 3, 5, 3)) * (1.0, 1.0, 0.5)
+
+    def alone(one: np.ndarray, people: bool) -> np.ndarray:
+        return np.concatenate([looks.clear(one[:, [k]], people) for k in range(one.shape[1])], axis=2)
+
+    whole = np.stack([alone(points[:, k], people=k < 2) for k in range(3)], axis=2)
+    assert 0.1 < whole.mean() < 0.9
+    np.testing.assert_array_equal(looks.shown(("a", "b", "c"), points, people=2), whole)
+    np.testing.assert_array_equal(looks.clear_apart(points[:, 0]), whole[:, :, 0])

@@ -74,14 +74,14 @@ def test_clips_are_good_or_bad_as_their_pictures_turned_out(scene: Scene) -> Non
     clips = clips_of(scene, np.random.default_rng(0))
     good = next(clip for clip in clips if clip.kind == "designer")
     bad = next(clip for clip in clips if clip.kind == "passed-over")
-    fell, rose = as_seen(good, hidden(good.camera)), as_seen(bad, good.camera)
+    fell, rose = as_seen([good, bad], [hidden(good.camera), good.camera])
     assert (fell.kind, fell.doubtful) == ("passed-over", False)
     assert fell.opinion < 0 < fell.strength
     assert (rose.kind, rose.strength, rose.opinion) == ("designer", 0.0, good.opinion)
     spoilt = next(clip for clip in clips if clip.kind == "perturbed" and clip.opinion < 0.5 * BAR)
-    same = as_seen(spoilt, spoilt.camera)
+    same, unsure = as_seen([spoilt, spoilt], [spoilt.camera, good.camera])
     assert (same.kind, same.opinion, same.doubtful) == (spoilt.kind, spoilt.opinion, spoilt.doubtful)
-    assert as_seen(spoilt, good.camera).doubtful, "nobody knows what it is"
+    assert unsure.doubtful, "nobody knows what it is"
 
 
 def test_a_set_is_labelled_by_pictures(scene: Scene, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -107,4 +107,4 @@ def test_a_set_is_labelled_by_pictures(scene: Scene, monkeypatch: pytest.MonkeyP
 def test_opinions_are_of_what_is_measured(scene: Scene, seen: Seen) -> None:
     cameras = drawn(scene, seen)
     clip = Clip(cameras[0], "designer", 0.0, 1.0, (None, None, None))
-    assert as_seen(clip, cameras[0]).opinion == float(judged(cameras[:1])[0])
+    assert as_seen([clip], cameras[:1])[0].opinion == float(judged(cameras[:1])[0])

@@ -320,7 +320,7 @@ def test_hints_of_a_mirrored_take_are_mirrored() -> None:
     }
     measures |= {"interest": 1.0, "size_drift": 0.0, "angular_speed": 9.0}
     measures |= {"legible": 0.8, "heads": 1.0, "hands_shown": 1.0, "together": 0.0}
-    here, there = (hints_of(replace(camera, track=t, measures=measures)) for t in (track, other))
+    here, there = hints_of([replace(camera, track=t, measures=measures) for t in (track, other)])
     assert here["jerk"] == 2.0
     assert here["good_headroom"] == pytest.approx(np.log(0.05), abs=1e-3)
     assert here["good_headroom"] < here["good_thirds"] < 0

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from .bodies import behind_own_back
 from .composition import broken
-from .covering import BEFORE, TRUNK, behind_bodies, behind_heads, covered, crowd_of, crowded
+from .covering import BEFORE, TRUNK, Crowd, behind_heads, covered, crowded
 from .framing import Array
 from .looking import Sight
 from .subject import SIGHT, Subject
@@ -50,20 +50,22 @@ def company_cut(
     axes: Array,
     picture: Picture,
     looks: Sight,
+    crowd: Crowd | None,
 ) -> Array:
     """Share [P] of the time in which somebody beside the subject is in the picture without their head: it is
     out of the frame, or somebody else or a thing is before it; and more by :data:`_ENDS` where the last frame
     is such a one: it is what is remembered of a take. Who is halved by a side of the frame or by a thing,
     head and all, counts for :data:`_HALF` of that, two without air between them for up to :data:`_CROWDED`,
     and whose feet are below the frame of a place, or of a size that shows the whole, for :data:`_FOOTLESS`.
+
+    crowd: of everybody, None for nobody
     """
     out, halves = np.zeros(camera.shape[:2]), np.zeros(camera.shape[:2])
-    asked = subject.members or ((subject,) if subject.kind == "person" else ())
-    if len(asked) + len(subject.company) < (1 if subject.kind == "place" else 2):
+    asked, everybody = subject.own, subject.everybody
+    if crowd is None or len(everybody) < (1 if subject.kind == "place" else 2):
         return np.zeros(len(camera))
     own = np.maximum(picture.depth[:, :, picture.names.index("pocket")], BEFORE)
-    crowd = crowd_of(takes, (*asked, *subject.company), at, camera, axes)
-    headless, behind = behind_bodies(crowd)
+    headless, behind = crowd.behind
     headless = headless & (not looks.by_pictures)
     there = np.zeros(crowd.depth.shape)  # how much each counts who is to be seen
     there[..., : len(asked)] = crowd.inside[..., : len(asked)]
@@ -81,7 +83,7 @@ def company_cut(
     halved = _HALF * np.minimum(halves.mean(axis=1) + _ENDS * halves[:, -1], 1.0)
     ugly = np.maximum(halved, _CROWDED * np.maximum(lapped.mean(axis=1), lapped[:, -1]))
     whole = subject.kind == "place" or np.array([size.lower == "feet" for size in takes.sizes])
-    feet = _FOOTLESS * whole * _footless(takes, (*asked, *subject.company), at, camera, axes, there)
+    feet = _FOOTLESS * whole * _footless(takes, everybody, at, camera, axes, there)
     ugly = np.maximum(ugly, feet)
     return np.asarray(np.clip(np.maximum(cut, ugly), 0.0, 1.0))
 
@@ -153,6 +155,7 @@ def company_shown(
     camera: Array,
     axes: Array,
     looks: Sight,
+    crowd: Crowd,
 ) -> dict[str, Array]:
     """Of a place with people in it: ``interest``, how many of their heads are seen, ``face``, how they are
     turned to the camera, what is seen (:func:`~vdsl.cinema.takes.visibility`) of who is seen best, less of
@@ -160,7 +163,6 @@ def company_shown(
     its ``visibility`` are that everybody is seen."""
     people, focal = subject.company, takes.track.focal[:, at]
     here = np.stack([subject.holds(one)[at] for one in people], axis=1)  # [F, people]
-    crowd = crowd_of(takes, people, at, camera, axes)
     eyes = np.stack([one.landmarks["eyes"][at] for one in people], axis=1)
     xy, depth = project(eyes[None], camera, axes, focal, takes.track.sensor)
     names = tuple(one.name for one in people)

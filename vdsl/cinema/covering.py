@@ -7,6 +7,7 @@ large is ``1 / depth`` there.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -43,26 +44,24 @@ class Crowd:
     depth: Array
     inside: Bools
 
+    @cached_property
+    def behind(self) -> tuple[Bools, Array]:
+        """:func:`behind_bodies`, which is asked for more than once."""
+        return behind_bodies(self)
+
 
 def crowd_of(
     takes: Takes, people: tuple[Subject, ...], at: NDArray[np.int64], camera: Array, axes: Array
 ) -> Crowd:
     """Where people are in the pictures of the frames ``at``."""
-    focal = takes.track.focal[:, at]
-
-    def of(name: str) -> tuple[Array, Array]:
-        points = np.stack([one.landmarks[name][at] for one in people], axis=1)
-        xy, depth = project(points[None], camera, axes, focal, takes.track.sensor)
-        return xy, depth
-
-    eyes, head = of("eyes")
-    chests, depth = of("pocket")
-    inside = within(chests, depth, 0.0)
-    crowns, chins, feet = (of(name)[0] for name in ("crown", "chin", "feet"))
-    eyes, crowns, chins, feet, chests = (
-        spread(xy, focal, takes.track.sensor) for xy in (eyes, crowns, chins, feet, chests)
-    )
-    return Crowd(eyes, crowns, chins, feet, chests, head, depth, inside)
+    focal, names, count = takes.track.focal[:, at], ("eyes", "crown", "chin", "feet", "pocket"), len(people)
+    points = np.stack([one.landmarks[name][at] for name in names for one in people], axis=1)
+    xy, depth = project(points[None], camera, axes, focal, takes.track.sensor)
+    chests = depth[..., -count:]
+    inside = within(xy[..., -count:, :], chests, 0.0)
+    marks = spread(xy, focal, takes.track.sensor)
+    eyes, crowns, chins, feet, chest = np.split(marks, len(names), axis=2)
+    return Crowd(eyes, crowns, chins, feet, chest, depth[..., :count], chests, inside)
 
 
 def spread(xy: Array, focal: Array, sensor: tuple[float, float]) -> Array:

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .bodies import behind_own_back
-from .covering import behind_bodies, crowd_of, lapped_heads
+from .covering import Crowd, lapped_heads
 from .framing import Array
 from .looking import Sight
 from .sizes import Size
@@ -46,6 +46,7 @@ def legibility(
     camera: Array,
     axes: Array,
     looks: Sight,
+    crowd: Crowd | None,
 ) -> dict[str, Array]:
     """Measures [P] of how well one reads who is there; of a thing, or without people, nothing is missed.
 
@@ -54,10 +55,12 @@ def legibility(
     middle of the time in which one of their hands is seen. ``heads``: share of everybody, over all the time,
     whose head is seen. ``together``: how near two heads are to each other in the picture, when they are
     furthest apart or but one is in it. In a place people count while they are in it.
+
+    crowd: of everybody, None for nobody
     """
-    own = subject.members or ((subject,) if subject.kind == "person" else ())
-    people = (*own, *subject.company)
-    if not people:
+    own = subject.own
+    people = subject.everybody
+    if crowd is None:
         nothing = np.zeros(len(camera))
         return {name: nothing + 1.0 for name in ("legible", "hands_shown", "heads")} | {"together": nothing}
     here = np.ones((len(at), len(people)), bool)
@@ -65,11 +68,10 @@ def legibility(
         here = np.stack([subject.holds(one)[at] for one in people], axis=1)
     there = _marks(takes, people, at, camera, axes, looks, len(own))  # who hides the company is asked below
     there &= here[..., None]
-    crowd = crowd_of(takes, people, at, camera, axes)
     headless = np.zeros(there.shape[:3], bool)
     if not looks.by_pictures:
         headless = np.stack([behind_own_back(one, at, camera) for one in people], axis=-1)
-        headless |= behind_bodies(crowd)[0]
+        headless |= crowd.behind[0]
     head = there[..., : len(_HEAD)]
     beside = np.asarray(there[..., : len(_HEAD) + 1].any(axis=-1))
     if looks.by_pictures:  # which say nothing of one who is quite behind another

@@ -18,6 +18,7 @@ from runtime.world import World
 from . import space
 from .company import company_cut, company_shown
 from .composition import framing, size_error
+from .covering import crowd_of
 from .framing import Array
 from .gestures import act_missed, at_work, face_covered, gesture_lost, hands_missed
 from .legibility import legibility
@@ -141,8 +142,9 @@ def measure(takes: Takes, subject: Subject, world: World, fps: float) -> Measure
     at_end = _worth_ending_on(subject, at, in_sight[:, -1]) | inside[:, -1, names.index("eyes")]
     ends = at_end | shown[:, -1].any(axis=-1)
     values["empty"] = np.minimum(1.0 - somebody.mean(axis=1) + ENDS_EMPTY * ~ends, 1.0)
-    values["company_cut"] = company_cut(takes, subject, at, camera, axes, picture, looks)
-    values |= legibility(takes, subject, at, camera, axes, looks)
+    crowd = crowd_of(takes, subject.everybody, at, camera, axes) if subject.everybody else None
+    values["company_cut"] = company_cut(takes, subject, at, camera, axes, picture, looks, crowd)
+    values |= legibility(takes, subject, at, camera, axes, looks, crowd)
     values["floor_gap"] = floor_gaps(takes, world, subject.floor, at, camera, axes, looks)
     across = _ALL_OVER if subject.kind == "place" else _CLOSELY if looks.by_pictures else _ASIDE
     values["foreground"] = _foreground(takes, subject.floor, at, camera, axes, picture, looks, across)
@@ -152,8 +154,8 @@ def measure(takes: Takes, subject: Subject, world: World, fps: float) -> Measure
         values |= everybody_measured(takes, subject, at, camera, axes, looks)
     if subject.kind == "place":  # nobody misses the edges of the box that stands for it
         values |= {name: np.zeros(len(camera)) for name in ("head_cut", "feet_cut", "thirds_error")}
-        if subject.company:
-            values |= company_shown(takes, subject, at, camera, axes, looks)
+        if crowd is not None:
+            values |= company_shown(takes, subject, at, camera, axes, looks, crowd)
     rows, key = np.arange(len(camera)), key_sample(takes, at)
     values["elevation"] = np.degrees(-rotation[rows, key, 1])
     values["height"] = camera[rows, key, 2] - subject.floor

@@ -8,6 +8,7 @@ track may truly bear more than one name (a dolly along with one who walks is a f
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -196,13 +197,20 @@ def _shakes(track: CameraTrack) -> bool:
     window = min(_QUICK, 2 * ((len(found) - 1) // 2) - 1)
     if window < 5:
         return False
-    from scipy.signal import savgol_filter  # only now: it takes a third of a second to import
-
-    rest = found - savgol_filter(found, window, 3, axis=0, mode="interp")
+    rest = found - _evening(len(found), window) @ found
     turns = (np.diff(np.sign(np.diff(rest, axis=0)), axis=0) != 0).sum(axis=0)
     strong = (rest.std(axis=0) > _WOBBLE) & (turns >= len(found) / 11)
     steep = np.abs(track.rotation[:, 1]).max() > _ABOVE  # where a yaw wobbles by itself
     return bool(strong[3:].all() and strong[:3].sum() >= (3 if steep else 2))
+
+
+@lru_cache(maxsize=16)
+def _evening(frames: int, window: int) -> Array:
+    """What a filter of Savitzky and Golay does to a track of so many frames, as a matrix; not to be written
+    to."""
+    from scipy.signal import savgol_filter  # only now: it takes a third of a second to import
+
+    return np.asarray(savgol_filter(np.eye(frames), window, 3, axis=0, mode="interp"))
 
 
 def _change(values: Array) -> float:

@@ -74,6 +74,16 @@ class Subject:
         return {one.name: one.landmarks["eyes"] for one in self.members}
 
     @property
+    def own(self) -> tuple[Subject, ...]:
+        """The people it is; () for a thing or a place."""
+        return self.members or ((self,) if self.kind == "person" else ())
+
+    @property
+    def everybody(self) -> tuple[Subject, ...]:
+        """These, and who else is about."""
+        return (*self.own, *self.company)
+
+    @property
     def floor(self) -> float:
         """Height of the lowest floor it is on."""
         return float(self.position[:, 2].min())

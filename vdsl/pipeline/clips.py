@@ -136,14 +136,15 @@ def _made(scene: Scene, shot: Shot, grid: ProposalGrid, rng: np.random.Generator
     return made
 
 
-def as_seen(clip: Clip, camera: CameraProposal) -> Clip:
-    """A clip as its pictures turned out, by what is measured of them in ``camera``: one that was not spoilt
+def as_seen(clips: Sequence[Clip], cameras: Sequence[CameraProposal]) -> list[Clip]:
+    """Clips as their pictures turned out, by what is measured of them in ``cameras``: one that was not spoilt
     is good or bad by the opinion of now; of one that was, and is not worse any more, nobody knows."""
-    thought = float(judged([camera])[0])
-    seen = replace(clip, camera=camera, opinion=thought)
-    if clip.kind not in _KINDS:
-        return _by_opinion(seen)
-    return replace(seen, doubtful=clip.doubtful or clip.opinion < BAR * (1 - _LOST) <= thought)
+    out = []
+    for clip, camera, thought in zip(clips, cameras, judged(cameras).tolist(), strict=True):
+        seen = replace(clip, camera=camera, opinion=thought)
+        unsure = clip.doubtful or clip.opinion < BAR * (1 - _LOST) <= thought
+        out.append(replace(seen, doubtful=unsure) if clip.kind in _KINDS else _by_opinion(seen))
+    return out
 
 
 def _by_opinion(clip: Clip) -> Clip:

@@ -244,6 +244,7 @@ def _filmed(scene: Scene, making: _Making, camerawork: Camerawork) -> _Filmed | 
     frames = [found.frames for found in drawn if found.frames.size]
     guides = joined([found.guides for found in drawn if found.guides is not None])
     labels = []
+    hints = hints_of([clip.camera for clip in seen])
     for k, clip in enumerate(seen):
         c = clip.camera
         told = {
@@ -252,7 +253,7 @@ def _filmed(scene: Scene, making: _Making, camerawork: Camerawork) -> _Filmed | 
             "camera": f"{c.movement} {c.scale} {c.angle}",
             "place": scene.place,
             "cast": list(scene.cast),
-            "hints": hints_of(c),
+            "hints": hints[k],
             "frames": clip.frames,
             "meant": clip.meant,
             "opinion": round(clip.opinion, 4),
@@ -274,8 +275,8 @@ def _as_seen(scene: Scene, clips: list[Clip], drawn: Seen) -> list[Clip]:
             cameras = [clips[i].camera for i in rows]
             stories = stories_of(scene.grids)
             found = as_drawn(shot, stories, scene.filming, scene.staged, cameras, drawn.only(rows))
-            for i, camera in zip(rows, found, strict=True):
-                out[i] = as_seen(clips[i], camera)
+            for i, clip in zip(rows, as_seen([clips[i] for i in rows], found), strict=True):
+                out[i] = clip
     return out
 
 

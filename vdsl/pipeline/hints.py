@@ -6,13 +6,16 @@ much of the face is seen, how fast the camera turns, is known of every drawn tak
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from math import isfinite
+
 import numpy as np
 from numpy.typing import NDArray
 
 from ..cinema.flaws import flaws_by_measure
 from ..cinema.subject import Subject
 from ..cinema.takes import samples
-from ..cinema.track import camera_axes, project
+from ..cinema.track import CameraTrack, camera_axes, project
 from ..propose.types import CameraProposal
 from .designer import appeal, qualities
 
@@ -27,26 +30,37 @@ _WORST = 0.05
 _POINTS, _FAR = ("crown", "eyes", "chin", "waist", "feet"), 3.0
 
 
-def hints_of(camera: CameraProposal) -> dict[str, float]:
-    """Measures, which of them are faults, how good it is by each of the designer's criteria and by all of
-    them, and the camera's own motion, by name; names that begin with ``right`` change their sign in a
-    mirrored picture.
+def hints_of(cameras: Sequence[CameraProposal]) -> list[dict[str, float]]:
+    """Of each its measures, which of them are faults, how good it is by each of the designer's criteria and
+    by all of them, and the camera's own motion, by name; names that begin with ``right`` change their sign in
+    a mirrored picture.
 
     Motion is from the first frame to the last: turns in radians, ways as a share of the distance to what is
     aimed at, in the camera's first axes.
     """
-    track = camera.track
-    found = {k: float(v) for k, v in camera.measures.items() if k not in _UNTAUGHT}
-    found |= {f"fault_{k}": float(v) for k, v in flaws_by_measure(camera.measures).items()}
-    good = qualities(camera.measures) | {"all": appeal(camera.measures)}
-    found |= {f"good_{k}": float(np.log(np.maximum(v, _WORST))) for k, v in good.items()}
-    found |= {k: max(found[k], 0.0) ** 0.5 for k in _LONG if k in found}
+    if not cameras:
+        return []
+    measures = {k: np.array([camera.measures[k] for camera in cameras], float) for k in cameras[0].measures}
+    found = {k: v for k, v in measures.items() if k not in _UNTAUGHT}
+    found |= {f"fault_{k}": v.astype(float) for k, v in flaws_by_measure(measures).items()}
+    good = qualities(measures) | {"all": appeal(measures)}
+    found |= {f"good_{k}": np.log(np.maximum(v, _WORST)) for k, v in good.items()}
+    found |= {k: np.maximum(found[k], 0.0) ** 0.5 for k in _LONG if k in found}
+    out = []
+    for k, camera in enumerate(cameras):
+        told = {name: float(v[k]) for name, v in found.items()} | _motion(camera.track)
+        out.append({name: round(v, 4) for name, v in sorted(told.items()) if isfinite(v)})
+    return out
+
+
+def _motion(track: CameraTrack) -> dict[str, float]:
+    """How a camera goes, turns and zooms, and how it looks."""
     distance = np.maximum(np.linalg.norm(track.look_at - track.position, axis=-1), 0.2)
     way = camera_axes(track.rotation[0]) @ (track.position[-1] - track.position[0]) / distance[0]
     turn = track.rotation[-1] - track.rotation[0]
     turned = (turn + np.pi) % (2 * np.pi) - np.pi
     seen = np.log(track.focal / distance)  # how large what is aimed at appears
-    found |= {
+    return {
         "right_way": float(way[0]),
         "up_way": float(way[1]),
         "forward_way": float(way[2]),
@@ -62,7 +76,6 @@ def hints_of(camera: CameraProposal) -> dict[str, float]:
         "distance": float(np.log(distance.mean())),
         "unsteady": float(np.abs(np.diff(track.rotation, 2, axis=0)).mean() ** 0.5),
     }
-    return {k: round(v, 4) for k, v in sorted(found.items()) if np.isfinite(v)}
 
 
 def frame_hints_of(camera: CameraProposal, subject: Subject, at: NDArray[np.int64]) -> dict[str, list[float]]:

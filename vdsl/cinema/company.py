@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from .bodies import behind_own_back
 from .composition import broken
-from .covering import BEFORE, TRUNK, Crowd, behind_heads, covered, crowded
+from .covering import BEFORE, TRUNK, Crowd, behind_heads, covered, crowd_of, crowded
 from .framing import Array
 from .looking import Sight
 from .subject import SIGHT, Subject
@@ -155,7 +155,6 @@ def company_shown(
     camera: Array,
     axes: Array,
     looks: Sight,
-    crowd: Crowd,
 ) -> dict[str, Array]:
     """Of a place with people in it: ``interest``, how many of their heads are seen, ``face``, how they are
     turned to the camera, what is seen (:func:`~vdsl.cinema.takes.visibility`) of who is seen best, less of
@@ -165,7 +164,7 @@ def company_shown(
     here = np.stack([subject.holds(one)[at] for one in people], axis=1)  # [F, people]
     eyes = np.stack([one.landmarks["eyes"][at] for one in people], axis=1)
     xy, depth = project(eyes[None], camera, axes, focal, takes.track.sensor)
-    names = tuple(one.name for one in people)
+    crowd, names = crowd_of(takes, people, at, camera, axes), tuple(one.name for one in people)
     seen = within(xy, depth, _EDGE) & looks.shown(names, eyes[:, :, None], people=0)[..., 0]
     if not looks.by_pictures:
         seen &= ~behind_heads(crowd.eyes, depth, crowd.feet)

@@ -8,6 +8,7 @@ time in which the subject is meant to be there: the window.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -109,8 +110,71 @@ class Measured:
     people: Array
 
 
-def measure(takes: Takes, subject: Subject, world: World, fps: float) -> Measured:
-    """All measures of all takes of one performance."""
+#: What is worked out last, and not of takes that are of no use anyway.
+_LAST = (
+    "walk_missed",
+    "act_missed",
+    "hands_missed",
+    "gesture_lost",
+    "face_covered",
+    "interest",
+    "empty",
+    "company_cut",
+    "legible",
+    "heads",
+    "together",
+    "hands_shown",
+    "floor_gap",
+)
+
+
+@dataclass(frozen=True, eq=False)
+class _Looks:
+    """Takes and what they look at in the sampled frames ``at``.
+
+    points: [F, K, 3], the subject's landmarks, by the names of ``picture``; camera: [P, F, 3]
+    axes: [P, F, 3, 3]; hidden: [P, W]; inside: [P, F, K], which landmarks are in the frame
+    seen: [P, F, points of SIGHT], which of these are that and nothing hides them
+    """
+
+    takes: Takes
+    at: NDArray[np.int64]
+    points: Array
+    camera: Array
+    axes: Array
+    picture: Picture
+    hidden: Bools
+    inside: Bools
+    seen: Bools
+    sight: Sight
+
+    def only(self, rows: NDArray[np.int64], subject: Subject, world: World) -> _Looks:
+        """Some of the takes."""
+        if len(rows) == len(self.camera):
+            return self
+        takes, camera, axes, hidden = (
+            self.takes.only(rows), self.camera[rows], self.axes[rows], self.hidden[rows]
+        )  # fmt: skip
+        picture = Picture(self.picture.names, self.picture.xy[rows], self.picture.depth[rows])
+        sight = sight_of(takes, _own(subject), world.solids, self.at, camera, axes, hidden)
+        return _Looks(
+            *(takes, self.at, self.points, camera, axes, picture, hidden),
+            *(self.inside[rows], self.seen[rows], sight),
+        )
+
+
+def measure(
+    takes: Takes,
+    subject: Subject,
+    world: World,
+    fps: float,
+    wanted: Callable[[Measured], Bools] | None = None,
+) -> Measured:
+    """All measures of all takes of one performance.
+
+    wanted: which takes [P] all measures are wanted of, by what is quickly worked out of them; those of the
+        others in ``_LAST`` are NaN
+    """
     track, at = takes.track, samples(subject.frames)
     camera, rotation = track.position[:, at], track.rotation[:, at]
     axes = camera_axes(rotation)
@@ -122,30 +186,10 @@ def measure(takes: Takes, subject: Subject, world: World, fps: float) -> Measure
     hidden = _hidden(world, track, at, camera, axes, picture, points[:, names.index("waist")])
     values, inside = framing(takes, subject, at, picture)
     sight_index = [names.index(n) for n in SIGHT]
-    sight = points[:, sight_index]
-    own = frozenset((subject.name, *subject.heads)) if subject.kind == "person" else frozenset()
-    looks = sight_of(takes, own, world.solids, at, camera, axes, hidden)
-
-    seen = looks.clear(sight)
+    looks = sight_of(takes, _own(subject), world.solids, at, camera, axes, hidden)
+    seen = looks.clear(points[:, sight_index])
     values["view"] = everybody_seen(takes, subject, at, camera, axes, looks)
     values |= visibility(takes, inside[:, :, sight_index], seen)
-    hands = [SIGHT.index(name) for name in ("hand_l", "hand_r")]
-    in_sight = inside[:, :, sight_index] & seen
-    values["walk_missed"] = _missed(points[:, names.index("waist")], in_sight)
-    values["act_missed"] = act_missed(subject, at, in_sight)
-    values["hands_missed"] = hands_missed(takes, subject, at, camera, in_sight[:, :, hands])
-    values["gesture_lost"] = gesture_lost(takes, subject, at, picture, in_sight[:, :, hands])
-    values["face_covered"] = face_covered(takes, subject, at, camera)
-    shown = _shown(takes, at, camera, axes, looks)
-    values["interest"] = _interest(takes, shown)
-    somebody = in_sight.any(axis=-1) | inside[:, :, names.index("eyes")] | shown.any(axis=-1)
-    at_end = _worth_ending_on(subject, at, in_sight[:, -1]) | inside[:, -1, names.index("eyes")]
-    ends = at_end | shown[:, -1].any(axis=-1)
-    values["empty"] = np.minimum(1.0 - somebody.mean(axis=1) + ENDS_EMPTY * ~ends, 1.0)
-    crowd = crowd_of(takes, subject.everybody, at, camera, axes) if subject.everybody else None
-    values["company_cut"] = company_cut(takes, subject, at, camera, axes, picture, looks, crowd)
-    values |= legibility(takes, subject, at, camera, axes, looks, crowd)
-    values["floor_gap"] = floor_gaps(takes, world, subject.floor, at, camera, axes, looks)
     across = _ALL_OVER if subject.kind == "place" else _CLOSELY if looks.by_pictures else _ASIDE
     values["foreground"] = _foreground(takes, subject.floor, at, camera, axes, picture, looks, across)
     values |= _motion(track, takes.roll, fps)
@@ -154,8 +198,8 @@ def measure(takes: Takes, subject: Subject, world: World, fps: float) -> Measure
         values |= everybody_measured(takes, subject, at, camera, axes, looks)
     if subject.kind == "place":  # nobody misses the edges of the box that stands for it
         values |= {name: np.zeros(len(camera)) for name in ("head_cut", "feet_cut", "thirds_error")}
-        if crowd is not None:
-            values |= company_shown(takes, subject, at, camera, axes, looks, crowd)
+        if subject.company:
+            values |= company_shown(takes, subject, at, camera, axes, looks)
     rows, key = np.arange(len(camera)), key_sample(takes, at)
     values["elevation"] = np.degrees(-rotation[rows, key, 1])
     values["height"] = camera[rows, key, 2] - subject.floor
@@ -168,7 +212,44 @@ def measure(takes: Takes, subject: Subject, world: World, fps: float) -> Measure
     others = [(foot[at], crown[at], radius) for foot, crown, radius in takes.others]
     people = space.to_people(camera, others)
     values["clearance"] = np.minimum(np.minimum(room.object, room.shown), people)
-    return Measured(values, hidden, room.shown, people)
+    found = Measured(values, hidden, room.shown, people)
+    if wanted is not None:
+        rows = np.flatnonzero(wanted(found))
+    in_sight = inside[:, :, sight_index] & seen
+    whole = _Looks(takes, at, points, camera, axes, picture, hidden, inside, in_sight, looks)
+    last = _last(whole.only(rows, subject, world), subject, world) if len(rows) else {}
+    for name in _LAST:  # of several what is told already is that of the worst off
+        if name not in values:
+            values[name] = np.full(len(camera), np.nan)
+            values[name][rows] = last.get(name, np.nan)
+    return found
+
+
+def _own(subject: Subject) -> frozenset[str]:
+    """Whom a shot is about, who are not in their own way."""
+    return frozenset((subject.name, *subject.heads)) if subject.kind == "person" else frozenset()
+
+
+def _last(of: _Looks, subject: Subject, world: World) -> dict[str, Array]:
+    """The measures in ``_LAST``: what one sees of what is done, who else is there, and what is missing."""
+    takes, at, camera, axes, picture = of.takes, of.at, of.camera, of.axes, of.picture
+    waist, eyes = (picture.names.index(name) for name in ("waist", "eyes"))
+    hands = of.seen[:, :, [SIGHT.index(name) for name in ("hand_l", "hand_r")]]
+    shown = _shown(takes, at, camera, axes, of.sight)
+    somebody = of.seen.any(axis=-1) | of.inside[:, :, eyes] | shown.any(axis=-1)
+    ends = _worth_ending_on(subject, at, of.seen[:, -1]) | of.inside[:, -1, eyes] | shown[:, -1].any(axis=-1)
+    crowd = crowd_of(takes, subject.everybody, at, camera, axes) if subject.everybody else None
+    return {
+        "walk_missed": _missed(of.points[:, waist], of.seen),
+        "act_missed": act_missed(subject, at, of.seen),
+        "hands_missed": hands_missed(takes, subject, at, camera, hands),
+        "gesture_lost": gesture_lost(takes, subject, at, picture, hands),
+        "face_covered": face_covered(takes, subject, at, camera),
+        "interest": _interest(takes, shown),
+        "empty": np.minimum(1.0 - somebody.mean(axis=1) + ENDS_EMPTY * ~ends, 1.0),
+        "company_cut": company_cut(takes, subject, at, camera, axes, picture, of.sight, crowd),
+        "floor_gap": floor_gaps(takes, world, subject.floor, at, camera, axes, of.sight),
+    } | legibility(takes, subject, at, camera, axes, of.sight, crowd)
 
 
 def _worth_ending_on(subject: Subject, at: NDArray[np.int64], seen: Bools) -> Bools:

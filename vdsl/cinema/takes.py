@@ -4,7 +4,7 @@ landmarks are in the picture.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import ClassVar
 
 import numpy as np
@@ -40,6 +40,10 @@ class Pictures:
     people: tuple[str, ...]
     over: tuple[str, ...] = ()
 
+    def only(self, rows: NDArray[np.int64]) -> Pictures:
+        """Of some of the takes."""
+        return replace(self, depth=self.depth[rows], what=self.what[rows])
+
     NOTHING: ClassVar[int] = 0
     THING: ClassVar[int] = 1
     MOVED: ClassVar[int] = 2
@@ -72,6 +76,18 @@ class Takes:
     near: space.Nearby | None = None
     view: str = ""
     pictures: Pictures | None = None
+
+    def only(self, rows: NDArray[np.int64]) -> Takes:
+        """Some of the takes (rows in rising order)."""
+        return replace(
+            self,
+            track=self.track.only(rows),
+            sizes=tuple(self.sizes[row] for row in rows),
+            window=self.window[rows],
+            key=self.key[rows],
+            near=None if self.near is None else self.near.only(rows),
+            pictures=None if self.pictures is None else self.pictures.only(rows),
+        )
 
 
 def samples(frames: int) -> NDArray[np.int64]:

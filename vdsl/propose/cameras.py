@@ -176,8 +176,9 @@ def _consider(
 class Tried:
     """Candidates of one story looked at.
 
-    reason: [P] index into REASONS, −1 for the good ones; kept: those that have room; measured: those alone,
-    None where there are none; window: the sampled frames in which those are meant to show their subject
+    reason: [P] index into REASONS, −1 for the good ones; kept: those that have room
+    measured: those alone, None where there are none; in full those that are good or may be let back in
+    window: the sampled frames in which those that have room are meant to show their subject
     """
 
     shooting: Shooting
@@ -210,8 +211,12 @@ def try_cameras(
     window = left.window(at, subject)
     takes = _takes(shot, subject, left.track, left.scales, window, left.key, story, filming)
     takes = replace(takes, near=near.only(kept))
-    measured = measure(takes, subject, filming.world, filming.fps)
-    reason[kept] = reasons(left, measured, subject)
+
+    def hopeful(first: Measured) -> NDArray[np.bool_]:
+        reason[kept] = reasons(left, first, subject)
+        return np.isin(reason[kept], (-1, *SOFT))
+
+    measured = measure(takes, subject, filming.world, filming.fps, hopeful)
     if foci.end is not None:
         held = held_by(shot, subject, story, filming, foci)
         lost = unseen_racks(left, foci, held, solids, measured.hidden, at)

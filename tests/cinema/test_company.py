@@ -11,9 +11,10 @@ from numpy.typing import NDArray
 
 from runtime.world import World
 from vdsl.cinema.flaws import flaws
-from vdsl.cinema.measures import measure
+from vdsl.cinema.measures import LAST, measure
 from vdsl.cinema.score import geometry_score
 from vdsl.cinema.subject import peopled, place
+from vdsl.cinema.track import CameraTrack
 from vdsl.propose.cameras import propose_cameras
 from vdsl.propose.subjects import performed, subject_of
 from vdsl.propose.types import STILL, StoryProposal
@@ -281,3 +282,32 @@ def test_who_is_hidden_for_a_while_is_missed() -> None:
     assert crossing["interest"] < 0.88
     assert crossing["visibility"] < 0.97 < beside["visibility"], "less, and no fault as long as that is all"
     assert geometry_score(crossing) < geometry_score(beside)
+
+
+def test_takes_that_are_not_wanted_are_measured_only_in_part() -> None:
+    """Of those that are, all measures are what they would be beside any others."""
+    told, eyes = two((0.0, 1.0)), ((3.0, 0.3, 1.5), (2.0, -2.0, 1.2), (-2.5, 0.4, 1.6), (4.0, 1.5, 2.0))
+    subject = subject_of(shot(scale="medium"), told, FILMING)
+    alone = [takes_of("medium", "person", eye, (0.0, 0.0, 1.3)) for eye in eyes]
+    parts = [
+        [getattr(one.track, name) for one in alone] for name in ("position", "rotation", "focal", "look_at")
+    ]
+    track = CameraTrack(*(np.concatenate(part) for part in parts), alone[0].track.sensor)
+    takes = replace(
+        alone[0],
+        track=track,
+        sizes=alone[0].sizes * 4,
+        window=np.concatenate([one.window for one in alone]),
+        key=np.zeros(4, np.int64),
+    )
+    wanted = np.array([True, False, True, False])
+    ground = world(boxes=((1.0, 0.2, 0.5, 0.2, 0.2, 0.5, 0.4),))
+    whole = measure(takes, subject, ground, 24.0).values
+    part = measure(takes, subject, ground, 24.0, lambda first: wanted & (first.values["visibility"] >= 0.0))
+    none = measure(takes, subject, ground, 24.0, lambda first: np.zeros(4, bool)).values
+    assert whole.keys() == part.values.keys() == none.keys()
+    for name, value in whole.items():
+        np.testing.assert_array_equal(part.values[name][wanted], value[wanted], err_msg=name)
+        assert np.isnan(part.values[name][~wanted]).all() or (part.values[name] == value).all(), name
+    assert {name for name, value in part.values.items() if np.isnan(value).any()} == set(LAST)
+    assert {name for name, value in none.items() if np.isnan(value).all()} == set(LAST)

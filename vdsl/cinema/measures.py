@@ -111,7 +111,7 @@ class Measured:
 
 
 #: What is worked out last, and not of takes that are of no use anyway.
-_LAST = (
+LAST = (
     "walk_missed",
     "act_missed",
     "hands_missed",
@@ -173,7 +173,7 @@ def measure(
     """All measures of all takes of one performance.
 
     wanted: which takes [P] all measures are wanted of, by what is quickly worked out of them; those of the
-        others in ``_LAST`` are NaN
+        others in ``LAST`` are NaN
     """
     track, at = takes.track, samples(subject.frames)
     camera, rotation = track.position[:, at], track.rotation[:, at]
@@ -218,7 +218,7 @@ def measure(
     in_sight = inside[:, :, sight_index] & seen
     whole = _Looks(takes, at, points, camera, axes, picture, hidden, inside, in_sight, looks)
     last = _last(whole.only(rows, subject, world), subject, world) if len(rows) else {}
-    for name in _LAST:  # of several what is told already is that of the worst off
+    for name in LAST:  # of several what is told already is that of the worst off
         if name not in values:
             values[name] = np.full(len(camera), np.nan)
             values[name][rows] = last.get(name, np.nan)
@@ -231,7 +231,7 @@ def _own(subject: Subject) -> frozenset[str]:
 
 
 def _last(of: _Looks, subject: Subject, world: World) -> dict[str, Array]:
-    """The measures in ``_LAST``: what one sees of what is done, who else is there, and what is missing."""
+    """The measures in ``LAST``: what one sees of what is done, who else is there, and what is missing."""
     takes, at, camera, axes, picture = of.takes, of.at, of.camera, of.axes, of.picture
     waist, eyes = (picture.names.index(name) for name in ("waist", "eyes"))
     hands = of.seen[:, :, [SIGHT.index(name) for name in ("hand_l", "hand_r")]]

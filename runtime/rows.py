@@ -1,4 +1,5 @@
-"""Which rows of an array are alike. numpy compares rows as wholes, which is several times as slow."""
+"""Which rows of an array are alike. numpy compares rows as wholes, which of many rows of a few numbers is
+several times as slow."""
 
 from __future__ import annotations
 
@@ -14,7 +15,8 @@ _MOST = 1 << 62  # of a key
 
 def unique_rows(rows: NDArray[Scalar]) -> tuple[NDArray[Scalar], NDArray[np.int64], NDArray[np.int64]]:
     """The different rows of ``rows`` [N, K] in rising order [U, K], where each is found first [U], and which
-    of them every row is [N]: ``np.unique(rows, axis=0, return_index=True, return_inverse=True)``."""
+    of them every row is [N]: ``np.unique(rows, axis=0, return_index=True, return_inverse=True)`` of rows
+    without NaN."""
     key, most = np.zeros(len(rows), np.int64), 1
     for column in rows.T:
         values, rank = np.unique(column, return_inverse=True)

@@ -34,7 +34,7 @@ class Lists:
 def lists_of(masks: NDArray[np.bool_], which: NDArray[np.int32]) -> Lists:
     """Lists of the vertices in masks [L, V]."""
     begin = np.concatenate([[0], np.cumsum(masks.sum(axis=1))]).astype(np.int32)
-    return Lists(np.nonzero(masks)[1].astype(np.int32), begin, which.astype(np.int32))
+    return Lists(np.nonzero(masks)[1].astype(np.int32), begin, which.reshape(-1).astype(np.int32))
 
 
 class Taken(NamedTuple):
@@ -129,8 +129,8 @@ def needed(
     vertices are needed but those of the finest levels
     """
     flat = shown.reshape(len(shown), shown.shape[1] * COUNT)
-    patterns, _, which = unique_rows(flat)
+    patterns, which = np.unique(flat, axis=0, return_inverse=True)
     masks = np.stack([detail.used(p.reshape(-1, COUNT)) for p in patterns])
     if every:
         masks[:, : detail.vertices] = True
-    return masks, which.astype(np.int32)
+    return masks, which.reshape(-1).astype(np.int32)

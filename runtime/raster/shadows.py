@@ -16,7 +16,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..rows import unique_rows
 from .device import Backend
 from .loaded import Loaded
 
@@ -118,9 +117,9 @@ class Shadows:
         self, loaded: Loaded, position: Any, member: NDArray[np.bool_], source: NDArray[np.int32]
     ) -> None:
         """Each home map once, and none if those that are there will do."""
-        members, first, which = unique_rows(member)
+        members, first, which = np.unique(member, axis=0, return_index=True, return_inverse=True)
         maps = len(members)
-        self.home = self._backend.upload(which.astype(np.int32))
+        self.home = self._backend.upload(which.reshape(-1).astype(np.int32))
         self._reserve_home(maps)
         frames = np.tile(np.array(loaded.home.frame(self.home_size), np.float32), (maps, 1))
         self.home_frame = self._backend.upload(frames)

@@ -112,7 +112,7 @@ def _beside_it(
         return body, head, np.zeros(far.shape), far
     aside = _SIDE * axes[:, :, None, 0]  # to the picture's right
     beside = points[None, :, 3:4] + np.concatenate([-aside, aside], axis=2)
-    middle = np.broadcast_to(points[None, :, 3:], beside.shape)
+    middle = np.broadcast_to(points[:, 3:], (len(beside), *points[:, 3:].shape))
     trunk = looks.clear(np.concatenate([beside, middle], axis=2), people=False)
     body &= trunk.any(axis=2)
     sides = trunk[:, :, :2]

@@ -127,8 +127,8 @@ def risen(
         low_up = lean * b + level * (s * z - c * a)
         r = (-ky * low_up - y_bottom * (s * a + c * z)) / (y_top - y_bottom)
         lift = -y_top * r / ky
-        right = level * side_b - lean * (s * side_z - c * side_a)
-        shift = right - x * (r - s * side_a - c * side_z) / kx
+        aside = level * side_b - lean * (s * side_z - c * side_a)  # ``across``, along the picture's right
+        shift = aside - x * (r - s * side_a - c * side_z) / kx
         stands = upper[..., 2] + (lift * level - shift * lean) * s + r * c
         lies = (upper[..., 2] + lower[..., 2]) / 2 + lying * c
         return np.asarray(np.where(-low_up < FLAT * tall, lies, stands))

@@ -25,6 +25,7 @@ from .track import project
 #: one they are before, however near they are; the own body, whose surface is not where its joints are.
 _THING, _MOVED, _SOMEBODY, _OWN = 0.14, 0.5, 0.03, 0.3
 _FAR_OFF = 0.01  # of the way, the same of somebody else: a pixel there is as broad as that
+_AT_ONCE = 4096  # groups of lines
 _NEAREST = 0.05  # metres before the camera from which on something is in its picture
 
 
@@ -94,10 +95,14 @@ class Lines:
     def _by_groups(self, points: Array) -> Bools:
         """Which of points [F, G, K, 3] no wall or thing hides, [P, F, G, K]. What may be in the way is looked
         for group by group: of points that lie close together it is little."""
-        groups = points.shape[1]
-        eye = np.repeat(self.camera, groups, axis=1)
-        seen = clear_lines(self.solids, eye, points.reshape(-1, *points.shape[2:]), self.hidden, self.ignore)
-        return seen.reshape(len(eye), *points.shape[:3])
+        ends = points.reshape(-1, *points.shape[2:])
+        takes = max(_AT_ONCE // max(len(ends), 1), 1)  # at a time: what is near all of them is much memory
+        seen = [np.zeros((0, *ends.shape[:2]), bool)]
+        for begin in range(0, len(self.camera), takes):
+            eye = np.repeat(self.camera[begin : begin + takes], points.shape[1], axis=1)
+            hidden = self.hidden[begin : begin + takes]
+            seen.append(clear_lines(self.solids, eye, ends, hidden, self.ignore))
+        return np.concatenate(seen).reshape(len(self.camera), *points.shape[:3])
 
 
 @dataclass(frozen=True, eq=False)

@@ -9,7 +9,7 @@ time in which the subject is meant to be there: the window.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -134,7 +134,8 @@ class _Looks:
 
     points: [F, K, 3], the subject's landmarks, by the names of ``picture``; camera: [P, F, 3]
     axes: [P, F, 3, 3]; hidden: [P, W]; inside: [P, F, K], which landmarks are in the frame
-    seen: [P, F, points of SIGHT], which of these are that and nothing hides them
+    seen: [P, F, points of SIGHT], which of these points are in the frame and nothing hides them
+    sight: how takes are looked at
     """
 
     takes: Takes
@@ -152,14 +153,18 @@ class _Looks:
         """Some of the takes."""
         if len(rows) == len(self.camera):
             return self
-        takes, camera, axes, hidden = (
-            self.takes.only(rows), self.camera[rows], self.axes[rows], self.hidden[rows]
-        )  # fmt: skip
-        picture = Picture(self.picture.names, self.picture.xy[rows], self.picture.depth[rows])
-        sight = sight_of(takes, _own(subject), world.solids, self.at, camera, axes, hidden)
-        return _Looks(
-            *(takes, self.at, self.points, camera, axes, picture, hidden),
-            *(self.inside[rows], self.seen[rows], sight),
+        takes = self.takes.only(rows)
+        camera, axes, hidden = self.camera[rows], self.axes[rows], self.hidden[rows]
+        return replace(
+            self,
+            takes=takes,
+            camera=camera,
+            axes=axes,
+            picture=replace(self.picture, xy=self.picture.xy[rows], depth=self.picture.depth[rows]),
+            hidden=hidden,
+            inside=self.inside[rows],
+            seen=self.seen[rows],
+            sight=sight_of(takes, _named(subject), world.solids, self.at, camera, axes, hidden),
         )
 
 
@@ -172,8 +177,8 @@ def measure(
 ) -> Measured:
     """All measures of all takes of one performance.
 
-    wanted: which takes [P] all measures are wanted of, by what is quickly worked out of them; those of the
-        others in ``LAST`` are NaN
+    wanted: which takes [P] all measures are wanted of, by what is quickly worked out of them; of the others
+        those in ``LAST`` are NaN, but for what is told of several, or of a place, anyway
     """
     track, at = takes.track, samples(subject.frames)
     camera, rotation = track.position[:, at], track.rotation[:, at]
@@ -186,7 +191,7 @@ def measure(
     hidden = _hidden(world, track, at, camera, axes, picture, points[:, names.index("waist")])
     values, inside = framing(takes, subject, at, picture)
     sight_index = [names.index(n) for n in SIGHT]
-    looks = sight_of(takes, _own(subject), world.solids, at, camera, axes, hidden)
+    looks = sight_of(takes, _named(subject), world.solids, at, camera, axes, hidden)
     seen = looks.clear(points[:, sight_index])
     values["view"] = everybody_seen(takes, subject, at, camera, axes, looks)
     values |= visibility(takes, inside[:, :, sight_index], seen)
@@ -213,19 +218,18 @@ def measure(
     people = space.to_people(camera, others)
     values["clearance"] = np.minimum(np.minimum(room.object, room.shown), people)
     found = Measured(values, hidden, room.shown, people)
-    if wanted is not None:
-        rows = np.flatnonzero(wanted(found))
+    asked = rows if wanted is None else np.flatnonzero(wanted(found))
     in_sight = inside[:, :, sight_index] & seen
     whole = _Looks(takes, at, points, camera, axes, picture, hidden, inside, in_sight, looks)
-    last = _last(whole.only(rows, subject, world), subject, world) if len(rows) else {}
-    for name in LAST:  # of several what is told already is that of the worst off
+    last = _last(whole.only(asked, subject, world), subject, world) if len(asked) else {}
+    for name in LAST:  # of several, and of a place, some are told already
         if name not in values:
             values[name] = np.full(len(camera), np.nan)
-            values[name][rows] = last.get(name, np.nan)
+            values[name][asked] = last.get(name, np.nan)
     return found
 
 
-def _own(subject: Subject) -> frozenset[str]:
+def _named(subject: Subject) -> frozenset[str]:
     """Whom a shot is about, who are not in their own way."""
     return frozenset((subject.name, *subject.heads)) if subject.kind == "person" else frozenset()
 

@@ -17,7 +17,7 @@ from scipy.ndimage import gaussian_filter1d
 from .moves import family
 from .subject import Subject
 from .track import CameraTrack, camera_axes
-from .vectors import dot, length
+from .vectors import dot
 
 Array = NDArray[np.float64]
 
@@ -42,6 +42,7 @@ _UP = 0.25  # least of a pedestal, share of the height of what is seen; less goe
 _ASKEW = 0.25  # the same for each metre of coming nearer or going back, whose direction is not known better
 _ABOVE = np.radians(65.0)  # over which rising and going back are the same
 _QUICK, _WOBBLE = 31, 1.5e-3  # frames of a wobble; least of one: metres, and twice radians, root mean square
+_SHORT = 300  # frames of a take
 _STEPS = 7.2  # frames over which steps are evened
 _TRAVELS = 0.3  # metres of somebody who goes
 #: What goes along with its subject by itself, and so needs not be called a follow besides.
@@ -181,7 +182,7 @@ def _crossing(position: Array, ahead: Array, path: Array) -> Array | None:
 def _miss(position: Array, ahead: Array, path: Array) -> Array:
     """Angle [..., T] between optical axis and direction to points [..., T, 3]."""
     to = path - position
-    cosine = dot(to, ahead) / np.maximum(length(to), 1e-6)
+    cosine = (to * ahead).sum(axis=-1) / np.maximum(np.linalg.norm(to, axis=-1), 1e-6)
     return np.asarray(np.arccos(np.clip(cosine, -1.0, 1.0)))
 
 
@@ -197,18 +198,26 @@ def _shakes(track: CameraTrack) -> bool:
     window = min(_QUICK, 2 * ((len(found) - 1) // 2) - 1)
     if window < 5:
         return False
-    rest = found - _evening(len(found), window) @ found
+    rest = found - _evened(found, window)
     turns = (np.diff(np.sign(np.diff(rest, axis=0)), axis=0) != 0).sum(axis=0)
     strong = (rest.std(axis=0) > _WOBBLE) & (turns >= len(found) / 11)
     steep = np.abs(track.rotation[:, 1]).max() > _ABOVE  # where a yaw wobbles by itself
     return bool(strong[3:].all() and strong[:3].sum() >= (3 if steep else 2))
 
 
-@lru_cache(maxsize=16)
-def _evening(frames: int, window: int) -> Array:
-    """What a filter of Savitzky and Golay does to a track of so many frames, as a matrix; not to be written
-    to."""
+def _evened(values: Array, window: int) -> Array:
+    """Values [T, K] through a filter of Savitzky and Golay. It is linear: of short takes, of which there are
+    many, its matrix is kept."""
     from scipy.signal import savgol_filter  # only now: it takes a third of a second to import
+
+    if len(values) > _SHORT:
+        return np.asarray(savgol_filter(values, window, 3, axis=0, mode="interp"))
+    return _filter(len(values), window) @ values
+
+
+@lru_cache(maxsize=16)
+def _filter(frames: int, window: int) -> Array:
+    from scipy.signal import savgol_filter
 
     return np.asarray(savgol_filter(np.eye(frames), window, 3, axis=0, mode="interp"))
 

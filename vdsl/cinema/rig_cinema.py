@@ -68,7 +68,7 @@ def frame(
     if size.lower in ("feet", "knees", "thigh"):
         across = (across + subject.landmarks["waist"][at] + lower) / 3
     ones = np.ones(len(theta))
-    column = 0.5 - lead * dot(subject.face[at], basis(theta, phi)[0])  # whose right no angle turns
+    column = 0.5 - lead * dot(subject.face[at], basis(theta, phi)[0])  # whose right does not depend on θ
     if aside is not None:
         column = np.where(np.isnan(aside), column, aside)
     lines = (size.top * ones, size.bottom * ones, column)

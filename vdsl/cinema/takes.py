@@ -40,14 +40,14 @@ class Pictures:
     people: tuple[str, ...]
     over: tuple[str, ...] = ()
 
-    def only(self, rows: NDArray[np.int64]) -> Pictures:
-        """Of some of the takes."""
-        return replace(self, depth=self.depth[rows], what=self.what[rows])
-
     NOTHING: ClassVar[int] = 0
     THING: ClassVar[int] = 1
     MOVED: ClassVar[int] = 2
     FIRST: ClassVar[int] = 3
+
+    def only(self, rows: NDArray[np.int64]) -> Pictures:
+        """Of some of the takes."""
+        return replace(self, depth=self.depth[rows], what=self.what[rows])
 
 
 @dataclass(frozen=True, eq=False)

@@ -20,6 +20,7 @@ from runtime.raster.panes import divided
 from runtime.raster.prepare import CLOSED, SHIFT, Prepared, prepare
 from runtime.raster.types import RenderScene, Style, Views, people_of
 from runtime.raster.views import left_out, pack_views, with_other_levels
+from runtime.rows import unique_rows
 
 NEAR, FAR = 0.03, 500.0
 PANE, LAMP = (0.10, 0.12, 0.13), (0.2, 0.2, 0.2)  # what both shine with beside their colour
@@ -177,9 +178,9 @@ class LlvmpipeDrawer:
         if not len(faces):
             return [[] for _ in moments]
         corners = prepared.faces[faces] - first_vertex
-        colors, shade = np.unique(_bases(prepared)[faces], axis=0, return_inverse=True)
-        pairs = np.stack([corners.reshape(-1), np.repeat(shade.reshape(-1), 3)], axis=1)
-        vertices, index = np.unique(pairs, axis=0, return_inverse=True)
+        colors, _, shade = unique_rows(_bases(prepared)[faces])
+        pairs = np.stack([corners.reshape(-1), np.repeat(shade, 3)], axis=1)
+        vertices, _, index = unique_rows(pairs)
         index = index.reshape(-1, 3).astype(np.int32)
         closed = ((prepared.info[faces, 1] >> SHIFT) & CLOSED) != 0
         wall = prepared.info[faces, 2]

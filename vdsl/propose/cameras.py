@@ -51,8 +51,9 @@ _PLAIN = 1.5  # how many of its kind what has no fault may follow, more than wha
 
 @dataclass(frozen=True, eq=False)
 class _Batch:
-    """Candidates of one story, measured: what was drawn, tracks [P], in which sampled frames they are meant
-    to show their subject [P, F], why each is thrown out, and how grave all its faults together are."""
+    """Candidates of one story, measured, in full those that are good or may be let back in: what was drawn,
+    tracks [P], in which sampled frames they are meant to show their subject [P, F], why each is thrown out,
+    and how grave all its faults together are."""
 
     sample: Sample
     shooting: Shooting
@@ -213,6 +214,7 @@ def try_cameras(
     takes = replace(takes, near=near.only(kept))
 
     def hopeful(first: Measured) -> NDArray[np.bool_]:
+        """Note why each is thrown out; of what may be offered after all, all is to be measured."""
         reason[kept] = reasons(left, first, subject)
         return np.isin(reason[kept], (-1, *SOFT))
 

@@ -53,7 +53,9 @@ class Filming:
         return (rig_paper if self.rig == "paper" else rig_cinema).sensor(self.aspect)
 
 
-@lru_cache(maxsize=64)  # asked for again for every few cameras
+# Asked for again for every few cameras. Shots are equal whatever words stand for their focus, which matters
+# to what they establish; but of the shots of one performance no two have the same id.
+@lru_cache(maxsize=64)
 def subject_of(shot: Shot, story: StoryProposal, filming: Filming) -> Subject:
     """Whom or what the shot's cameras are about; its arrays are not to be written to."""
     subject = _subject(shot, story, filming)

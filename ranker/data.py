@@ -139,7 +139,7 @@ class ShardWriter:
         guides: Guides | None = None,
     ) -> None:
         """Append a clip: uint8 [T, H, W, 3], None for a bare one; guides: its own, of one shot, all clips of
-        a shard's or none's; see :class:`Label` for the rest."""
+        a shard's or none's; see :class:`Label` for the rest. Frames nobody can change are not copied."""
         if frames is None and guides is None:
             raise ValueError("a clip without frames needs guides")
         if frames is not None and (frames.shape != self.shape or frames.dtype != np.uint8):
@@ -159,7 +159,7 @@ class ShardWriter:
         made = Label(bool(label), movement, scale, angle, group, float(strength), split, told)
         self._pending.append((made, guides))
         if frames is not None:
-            self._frames.append(frames.copy())
+            self._frames.append(frames.copy() if frames.flags.writeable else frames)
         if len(self._pending) >= self.shard:
             self.flush()
 
@@ -172,10 +172,11 @@ class ShardWriter:
         lines = "".join(json.dumps(asdict(label), ensure_ascii=False) + "\n" for label, _ in ordered)
         part = self.folder / f".{base.name}.npy.part"
         try:
-            with part.open("wb") as file:
-                np.save(
-                    file, np.stack(self._frames) if self._frames else np.zeros((0, *self.shape), np.uint8)
-                )
+            with part.open("wb") as file:  # one after the other: together they would be copied twice
+                shape = (len(self._frames), *self.shape)
+                header = {"descr": np.dtype(np.uint8).str, "fortran_order": False, "shape": shape}
+                np.lib.format.write_array_header_1_0(file, header)
+                file.writelines(np.ascontiguousarray(frames).data for frames in self._frames)
             os.replace(part, base.with_suffix(".npy"))
             found = [guides for _, guides in ordered if guides is not None]
             if found:

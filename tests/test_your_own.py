@@ -12,7 +12,7 @@ import vdsl
 from vdsl.lang import Report, Settings
 from vdsl.pipeline.compile import stage_acts
 from vdsl.pipeline.script import load_storyboard
-from vdsl.propose.story import advance
+from vdsl.propose.story import begin
 
 ROOT = Path(__file__).resolve().parents[1]
 EXAMPLE = ROOT / "examples" / "lighthouse.vds"
@@ -40,7 +40,7 @@ def test_what_is_defined_there_works_in_the_story() -> None:
     checked = load_storyboard(EXAMPLE)
     acts = stage_acts(checked)
     last = acts[-1]
-    state = advance(last.state, last.line, checked.catalog, last.filming, Report())
+    state = begin(last.state, last.line, last.filming, Report()).end
     by_name = {thing.path[-1]: thing.id for thing in last.staged.world.objects}
     assert state.props[by_name["lid"]].open > 0.9  # what is opened stays open
     held = [thing for _, thing in state.actors["tom"].held]

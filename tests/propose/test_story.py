@@ -19,7 +19,7 @@ from vdsl.lang.ir import Storyboard
 from vdsl.library import Catalog
 from vdsl.propose.cameras import Filming
 from vdsl.propose.state import SceneState, opening_state
-from vdsl.propose.story import advance, propose, tell
+from vdsl.propose.story import begin, propose, tell
 from vdsl.propose.types import StoryProposal
 from vdsl.stage.world import build_world
 
@@ -64,7 +64,7 @@ def play(lines: str, seed: int = 0) -> Played:
     report = Report()
     states = [opening_state(storyboard.scenes[0], world, skeletons, report)]
     for line in storyboard.lines:
-        states.append(advance(states[-1], line, catalog, filming, report))
+        states.append(begin(states[-1], line, filming, report).end)
     return Played(storyboard, filming, states, report)
 
 
@@ -169,7 +169,7 @@ def test_a_target_that_cannot_be_reached_is_explained() -> None:
     skeletons = {"anna": make_skeleton(BodySpec())}
     filming = Filming(world, skeletons, 24.0, 0, room=("cell",), catalog=catalog)
     state = opening_state(storyboard.scenes[0], world, skeletons, report)
-    end = advance(state, storyboard.lines[0], catalog, filming, report)
+    end = begin(state, storyboard.lines[0], filming, report).end
     (error,) = report.errors
     assert error.code == "VDS170"
     assert error.span.text == "right"

@@ -17,7 +17,7 @@ import numpy as np
 
 from .sizes import SIZES
 from .subject import Subject
-from .track import CameraTrack, camera_axes, project
+from .track import CameraTrack, project
 from .vectors import Array
 
 _GOING = 0.3  # metres a second: who is slower is not going anywhere
@@ -113,7 +113,7 @@ def _edge(
 ) -> Edge:
     t = len(track.focal) - 1 if end else 0
     camera, heart = track.position[t], subject.landmarks["pocket"][t]
-    depth = float((heart - camera) @ camera_axes(track.rotation[t])[2])
+    depth = float((heart - camera) @ track.axes[t, 2])
     view = max(depth, 0.01) * track.sensor[1] / float(track.focal[t]) / max(subject.height, 1e-6)
     shown = frozenset(name for name, who in people.items() if _in_frame(track, who, t))
     gazes = frozenset((a, b) for a, b in permutations(people, 2) if _looks_at(people, a, b, t))
@@ -136,7 +136,7 @@ def _edge(
 def _in_frame(track: CameraTrack, who: Subject, t: int) -> bool:
     """Whether eyes or chest are in the picture."""
     points = np.stack([who.landmarks["eyes"][t], who.landmarks["pocket"][t]])
-    axes = camera_axes(track.rotation[t])
+    axes = track.axes[t]
     xy, depth = project(points, track.position[t], axes, np.asarray(track.focal[t]), track.sensor)
     return bool(((depth > 0.05) & (xy > 0.0).all(axis=-1) & (xy < 1.0).all(axis=-1)).any())
 

@@ -8,7 +8,7 @@ track may truly bear more than one name (a dolly along with one who walks is a f
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cached_property, lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,6 +26,7 @@ _TIE = 0.05  # how much an axis' own evidence has to weigh against the subject's
 #: Between which landmarks the point filmed may lie.
 _PARTS = (("eyes", "nose"), ("collar", "collar"), ("pocket", "pocket"), ("eyes", "waist"), ("waist", "waist"),
           ("waist", "knees"))  # fmt: skip
+_TRUNK = _PARTS.index(("eyes", "waist"))
 _MEETS = np.radians(40.0)  # between axes from which the point is known by itself
 _THROUGH, _FLAT = (
     0.015,
@@ -110,7 +111,8 @@ class _Seen:
         position, rotation = track.position, track.rotation
         if shaken:
             position, rotation = _trend(position), _trend(rotation)
-        path, best = _filmed(position, rotation, subject)
+        ahead = camera_axes(rotation)[:, 2] if shaken else track.axes[:, 2]
+        path, best = _filmed(position, rotation, ahead, subject)
         still = float(np.linalg.norm(np.ptp(position, axis=0))) < (_SHAKEN if shaken else _STILL)
         middle = (subject.landmarks["eyes"] + subject.landmarks["waist"])[:, :2] / 2
         travels = float(np.linalg.norm(middle - middle[0], axis=1).max()) > _TRAVELS
@@ -128,21 +130,25 @@ class _Seen:
         azimuth = np.unwrap(np.arctan2(v[:, 1], v[:, 0]))
         return np.log(np.maximum(np.hypot(flat, v[:, 2]), 1e-3)), azimuth, np.arctan2(v[:, 2], flat)
 
+    @cached_property
+    def about_path(self) -> tuple[Array, Array, Array]:
+        """The same about the point filmed."""
+        return self.about(self.path)
+
+    @cached_property
     def off_subject(self) -> tuple[Array, Array]:
         """How far the camera points to the left of the point filmed, and over it, at every frame, radians."""
-        _, azimuth, elevation = self.about(self.path)
+        _, azimuth, elevation = self.about_path
         return np.unwrap(self.rotation[:, 2] - azimuth), self.rotation[:, 1] + elevation
 
 
-def _filmed(position: Array, rotation: Array, subject: Subject) -> tuple[Array, int]:
+def _filmed(position: Array, rotation: Array, ahead: Array, subject: Subject) -> tuple[Array, int]:
     """The point filmed [T, 3] and the frame at which the camera points at it best: of the points that go
     with a part of the subject that nearest to the optical axes which point at it."""
-    ahead = camera_axes(rotation)[:, 2]
-    marks = subject.landmarks
-    parts = np.stack([(marks[a] + marks[b]) / 2 for a, b in _PARTS])
+    parts = _parts_of(subject)
     misses = _miss(position, ahead, parts)
     chosen = int(misses.min(axis=1).argmin())
-    miss, trunk = misses[chosen], (marks["eyes"] + marks["waist"]) / 2
+    miss, trunk = misses[chosen], parts[_TRUNK]
     path = np.column_stack([trunk[:, :2], parts[chosen][:, 2]])
     path[:, :2] += (parts[chosen] - trunk)[int(miss.argmin()), :2]  # a head turns faster than one goes
     path = gaussian_filter1d(path, _STEPS, axis=0, mode="nearest")
@@ -156,6 +162,13 @@ def _filmed(position: Array, rotation: Array, subject: Subject) -> tuple[Array, 
     tie = (0.1 * _TIE if meets else _TIE) * near.sum()
     shift = np.linalg.solve(off.sum(axis=0) + tie * np.eye(3), beside)
     return path + shift, int(miss.argmin())
+
+
+@lru_cache(maxsize=16)
+def _parts_of(subject: Subject) -> Array:
+    """The points [P, T, 3] of which one is filmed; its takes are mostly read one after the other."""
+    marks = subject.landmarks
+    return np.stack([(marks[a] + marks[b]) / 2 for a, b in _PARTS])
 
 
 def _crossing(position: Array, ahead: Array, path: Array) -> Array | None:
@@ -236,9 +249,9 @@ def _turns(seen: _Seen) -> set[str]:
     roll, pitch, yaw = seen.rotation.T
     if abs(_change(roll)) > _LEAN:
         out.add(_way("roll", _change(roll), "right", "left"))
-    aside, over = seen.off_subject()
+    aside, over = seen.off_subject
     zooms = abs(np.log(seen.focal[-1] / seen.focal[0])) > _ZOOMS
-    away, orbits = seen.about(seen.path)[1], False
+    away, orbits = seen.about_path[1], False
     if seen.still and abs(_change(yaw)) > np.radians(45.0) and not zooms:
         step = np.abs(np.diff(yaw))
         if step.max() > 4.0 * step.mean() and step.max() > np.radians(2.0):
@@ -285,7 +298,7 @@ def _ways(seen: _Seen) -> list[set[str]]:
     if seen.still:
         return [set()]
     parallel = max(np.ptp(seen.rotation[:, 1]), np.ptp(seen.rotation[:, 2])) < _AFTER / 2
-    loyal = max(map(np.ptp, seen.off_subject())) < 2 * _AFTER
+    loyal = max(map(np.ptp, seen.off_subject)) < 2 * _AFTER
     here = np.broadcast_to(seen.path[seen.best], seen.path.shape)
     along, beside = _moves(seen, seen.path), _moves(seen, here)
     if _goes_with(seen):
@@ -333,7 +346,7 @@ def _goes_with(seen: _Seen) -> bool:
 
 def _moves(seen: _Seen, pivot: Array) -> set[str]:
     """Pushes, pulls, arcs, cranes, dollies and pedestals about a pivot [T, 3]."""
-    reach, azimuth, elevation = seen.about(pivot)
+    reach, azimuth, elevation = seen.about_path if pivot is seen.path else seen.about(pivot)
     turned = _change(seen.rotation[:, 2] if seen.overhead else azimuth)
     risen, nearer = _change(elevation), -_change(reach)
     pitch = seen.rotation[:, 1]

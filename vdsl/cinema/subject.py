@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -83,7 +84,7 @@ class Subject:
         """These, and who else is about."""
         return (*self.own, *self.company)
 
-    @property
+    @cached_property
     def floor(self) -> float:
         """Height of the lowest floor it is on."""
         return float(self.position[:, 2].min())

@@ -9,6 +9,7 @@ down in the picture's own frame). Arrays may carry leading batch axes: [..., T, 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,6 +32,11 @@ class CameraTrack:
     sensor: tuple[float, float]
     focus: NDArray[np.float64] | None = None
     aperture: NDArray[np.float64] | float = 0.0
+
+    @cached_property
+    def axes(self) -> NDArray[np.float64]:
+        """Right, up and forward of the camera as rows, [..., T, 3, 3]."""
+        return camera_axes(self.rotation)
 
     def only(self, rows: NDArray[np.int64] | int) -> CameraTrack:
         """Some of the tracks of a batch, or one of them by itself."""
@@ -59,11 +65,16 @@ def camera_axes(rotation: NDArray[np.float64]) -> NDArray[np.float64]:
     """Right, up and forward as rows, [..., 3, 3], from roll, pitch, yaw [..., 3]."""
     roll, pitch, yaw = rotation[..., 0], rotation[..., 1], rotation[..., 2]
     cb, sb, cg, sg = np.cos(pitch), np.sin(pitch), np.cos(yaw), np.sin(yaw)
-    forward = np.stack([cb * cg, cb * sg, sb], axis=-1)
-    right0 = np.stack([sg, -cg, np.zeros_like(sg)], axis=-1)
-    up0 = np.cross(right0, forward)
-    ca, sa = np.cos(roll)[..., None], np.sin(roll)[..., None]
-    return np.stack([ca * right0 - sa * up0, sa * right0 + ca * up0, forward], axis=-2)
+    ca, sa = np.cos(roll), np.sin(roll)
+    out = np.empty((*np.shape(roll), 3, 3))
+    forward = out[..., 2, :]
+    forward[..., 0], forward[..., 1], forward[..., 2] = cb * cg, cb * sg, sb
+    level = (sg, -cg, 0.0)  # to the right, and over the picture, of a camera that does not lean
+    over = (-cg * sb, -sg * sb, sg * forward[..., 1] + cg * forward[..., 0])
+    for k in range(3):
+        out[..., 0, k] = ca * level[k] - sa * over[k]
+        out[..., 1, k] = sa * level[k] + ca * over[k]
+    return out
 
 
 def project(

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image, ImageDraw
 
-from ..cinema.track import CameraTrack, camera_axes, project
+from ..cinema.track import CameraTrack, project
 from .remember import remembering
 from .types import BuiltTake, Walk
 
@@ -116,9 +116,7 @@ def _seen(path: Array, track: CameraTrack, frame: int) -> Array:
 
 def _pictured(points: Array, track: CameraTrack, frame: int) -> Array:
     """Shares of the picture [K, 2]; not a number behind the camera."""
-    at, depth = project(
-        points, track.position[frame], camera_axes(track.rotation[frame]), track.focal[frame], track.sensor
-    )
+    at, depth = project(points, track.position[frame], track.axes[frame], track.focal[frame], track.sensor)
     return np.where(depth[:, None] > 0.2, at, np.nan)
 
 
@@ -204,7 +202,7 @@ def _arrows_of(word: str, track: CameraTrack, frame: int, shape: float) -> list[
 def _followed(track: CameraTrack, frame: int, shape: float) -> list[list[Point]]:
     """Where a camera that goes along with somebody goes: sideways or up as an arrow, in depth as corners."""
     away = track.position[-1] - track.position[frame]
-    right, up, forward = camera_axes(track.rotation[frame]) @ away
+    right, up, forward = track.axes[frame] @ away
     if max(abs(right), abs(up), abs(forward)) < 0.3:
         return []
     if abs(forward) > max(abs(right), abs(up)):

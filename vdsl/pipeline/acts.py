@@ -14,7 +14,7 @@ from time import perf_counter
 from ..lang.ir import Scene, StoryLine
 from ..propose.cameras import Filming
 from ..propose.state import SceneState, opening_state
-from ..propose.story import advance
+from ..propose.story import Begun, begin
 from ..stage.assemble import StagedScene
 from ..stage.models import check_models
 from .cache import Cache
@@ -32,12 +32,14 @@ def _nobody(seconds: float) -> None:
 
 @dataclass(frozen=True, eq=False)
 class Act:
-    """A story line with the scene it plays in and the state it starts from."""
+    """A story line with the scene it plays in and the state it starts from. begun: its first performance,
+    where that is kept"""
 
     line: StoryLine
     staged: StagedScene
     filming: Filming
     state: SceneState
+    begun: Begun | None = None
 
 
 @dataclass(eq=False)
@@ -53,7 +55,7 @@ def stage_acts(checked: Checked, hand: Stagehand | None = None, played: Played =
 
     hand: one that has built sets and bodies before; played: told of every line, with the seconds it took
     """
-    acts = Acts(checked, Cache(kept=False), "", hand, played=played)
+    acts = Acts(checked, Cache(kept=False), "", hand, played=played, begun=True)
     acts.play()
     return [acts.act(line) for line in checked.storyboard.lines]
 
@@ -61,7 +63,8 @@ def stage_acts(checked: Checked, hand: Stagehand | None = None, played: Played =
 class Acts:
     """The acts of a script, staged and played where that was not done before.
 
-    code: digest of the code that plays; warm: what this process has kept
+    code: digest of the code that plays; warm: what this process has kept; begun: whether to keep the first
+    performance of every line, which would be much of a long script
     """
 
     def __init__(
@@ -72,8 +75,10 @@ class Acts:
         hand: Stagehand | None = None,
         warm: Warm | None = None,
         played: Played = _nobody,
+        begun: bool = False,
     ) -> None:
         self.checked, self.cache, self.code, self.played = checked, cache, code, played
+        self.begun = begun
         self.hand = hand or Stagehand(checked.catalog)
         self.warm = warm or Warm()
         self._modelled = False
@@ -98,7 +103,8 @@ class Acts:
     def act(self, line: StoryLine) -> Act:
         """A line, staged."""
         run = self._scenes[line.scene]
-        return Act(line, run.staged, run.filming, run.state(run.at(line)))
+        k = run.at(line)
+        return Act(line, run.staged, run.filming, run.state(k), run.begun.get(k))
 
     def seen(self, line: StoryLine) -> str:
         """Digest of a line's scene, the state before it, and what happens on it."""
@@ -126,6 +132,7 @@ class _SceneRun:
     text: digest of how it opens; props: of that and of all that people bring to it
     marks: of the state before each line, and after the last one
     texts: of what happens on each line
+    begun: first performances that are kept, by the number of their line
     """
 
     def __init__(self, acts: Acts, number: int, scene: Scene, lines: Sequence[StoryLine]) -> None:
@@ -138,6 +145,7 @@ class _SceneRun:
             digest(line_text(line, checked.catalog), name) for line, name in zip(lines, drawn, strict=True)
         ]
         self.marks: list[str] = []
+        self.begun: dict[int, Begun] = {}
         self._places = {id(line): k for k, line in enumerate(lines)}
         self._staged: StagedScene | None = None
         self._filming: Filming | None = None
@@ -227,5 +235,7 @@ class _SceneRun:
         return opening_state(self.scene, self.staged.world, skeletons, self.acts.checked.report)
 
     def _advanced(self, k: int) -> SceneState:
-        checked = self.acts.checked
-        return advance(self.state(k), self.lines[k], checked.catalog, self.filming, checked.report)
+        begun = begin(self.state(k), self.lines[k], self.filming, self.acts.checked.report)
+        if self.acts.begun:
+            self.begun[k] = begun
+        return begun.end

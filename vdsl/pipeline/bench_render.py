@@ -26,7 +26,6 @@ from runtime.raster.renderer import Renderer
 from runtime.raster.types import STYLES, Camera, RenderScene, Views
 from runtime.video import write_video
 
-from ..cinema.track import camera_axes
 from ..propose.story import propose
 from ..propose.types import CameraProposal, StoryProposal
 from .acts import Act, stage_acts
@@ -150,7 +149,7 @@ def case_of(act: Act, story: StoryProposal, camera: CameraProposal) -> Case:
     track = camera.track
     poses = Camera(
         track.position[frames].astype(np.float32),
-        camera_axes(track.rotation[frames]).astype(np.float32),
+        track.axes[frames].astype(np.float32),
         track.focal[frames].astype(np.float32),
         track.sensor,
     )

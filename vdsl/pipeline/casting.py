@@ -87,7 +87,7 @@ class Troupe:
             return
         cast = tuple(c.cast for c in checked.storyboard.characters)
         for act in acts:
-            told = tell(act.state, act.line, act.filming, shot=act.line.shots[0])
+            told = tell(act.state, act.line, act.filming, shot=act.line.shots[0], begun=act.begun)
             shots = tuple(replace(shot, proposals=proposals) for shot in act.line.shots[:most])
             grids = tuple(film(told, shot, act.state, act.filming) for shot in shots)
             filming = as_filmed(told, act.state, act.filming)

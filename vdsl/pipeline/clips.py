@@ -229,11 +229,14 @@ def _worse(
     thought: float,
 ) -> Clip | None:
     """A spoilt take where it is worse than the good one: by the designer, or it lost what was asked."""
+    nothing = (None, None, None)
+    if attempts.kind == "mistyped" and thought < attempts.least and _seen(camera, thought):
+        return Clip(camera, attempts.kind, attempts.strengths[turn], thought, nothing)  # whatever it shows
     words = _read(scene, shot, grid, camera)
     lost = any(asked and not shown for asked, shown in zip(_asked(attempts.good), words, strict=True))
     if thought >= attempts.least and not lost:
         return None
-    known = (None, None, None) if attempts.kind == "mistyped" else words
+    known = nothing if attempts.kind == "mistyped" else words
     doubtful = not lost and not _seen(camera, thought)
     return Clip(camera, attempts.kind, attempts.strengths[turn], thought, known, doubtful=doubtful)
 

@@ -16,12 +16,12 @@ import pickle
 import signal
 import tempfile
 from collections import deque
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Future, ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import suppress
 from dataclasses import dataclass
-from itertools import count
+from itertools import count, islice
 from multiprocessing.queues import Queue
 from pathlib import Path
 from time import perf_counter
@@ -56,10 +56,10 @@ _PROCESSES, _WAITING = 16, 2
 
 @dataclass(frozen=True, eq=False)
 class _Filmed:
-    """The clips of a scene. frames: uint8 [N, T, S, S, 3] of the first N; labels: of all of them, the rest
+    """The clips of a scene. frames: uint8 [T, S, S, 3] of each of the first; labels: of all of them, the rest
     that ``ShardWriter.add`` takes"""
 
-    frames: NDArray[np.uint8]
+    frames: Sequence[NDArray[np.uint8]]
     labels: list[tuple[Any, ...]]
 
 
@@ -154,14 +154,15 @@ def _stories(first: int, making: _Making, processes: int, folder: Path) -> Itera
     for place in range(processes):
         places.put(place)
     waiting: deque[Future[Path]] = deque()
-    between = tempfile.TemporaryDirectory(prefix=".filmed-", dir=folder)
+    # what is mapped cannot be removed everywhere: then it stays until it is no more
+    between = tempfile.TemporaryDirectory(prefix=".filmed-", dir=folder, ignore_cleanup_errors=True)
     about = (places, making, Path(between.name))
     pool = ProcessPoolExecutor(processes, context, _settle, about)
     try:
         for number in count(first):
             waiting.append(pool.submit(_film_here, number))
             if len(waiting) >= _WAITING * processes:
-                yield _taken(waiting.popleft().result())
+                yield _taken(waiting.popleft().result(), making.size)
     except BrokenProcessPool as error:
         raise OSError(
             "a process that films stories was ended from outside, perhaps for want of memory; "
@@ -188,8 +189,13 @@ def _settle(places: Queue[int], making: _Making, between: Path) -> None:
 
     def left(number: int) -> Path:
         path = between / str(number)
+        scenes = film(number)
+        with path.with_suffix(".frames").open("wb") as file:
+            for scene in scenes:
+                file.writelines(np.ascontiguousarray(clip).data for clip in scene.frames)
         with path.open("wb") as file:
-            pickle.dump(film(number), file, pickle.HIGHEST_PROTOCOL)
+            told = [(len(scene.frames), scene.labels) for scene in scenes]
+            pickle.dump(told, file, pickle.HIGHEST_PROTOCOL)
         return path
 
     _here.append(left)
@@ -199,11 +205,17 @@ def _film_here(number: int) -> Path:
     return _here[0](number)
 
 
-def _taken(path: Path) -> list[_Filmed]:
-    """What a process of ours left."""
+def _taken(path: Path, size: int) -> list[_Filmed]:
+    """What a process of ours left: labels, and frames of ``size`` that stay on disk until they are read."""
     with path.open("rb") as file:
-        found: list[_Filmed] = pickle.load(file)
+        told: list[tuple[int, list[tuple[Any, ...]]]] = pickle.load(file)
+    count, frames = sum(n for n, _ in told), path.with_suffix(".frames")
+    shape = (count, SEGMENTS, size, size, 3)
+    clips = iter(np.memmap(frames, np.uint8, "r", shape=shape) if count else ())
+    found = [_Filmed(list(islice(clips, n)), labels) for n, labels in told]
     path.unlink()
+    with suppress(PermissionError):
+        frames.unlink()
     return found
 
 
@@ -241,7 +253,7 @@ def _filmed(scene: Scene, making: _Making, camerawork: Camerawork) -> _Filmed | 
             )
             seen += _as_seen(scene, some, found)
             drawn.append(Seen(found.frames, found.guides))
-    frames = [found.frames for found in drawn if found.frames.size]
+    frames = [clip for found in drawn if found.frames.size for clip in found.frames]
     guides = joined([found.guides for found in drawn if found.guides is not None])
     labels = []
     hints = hints_of([clip.camera for clip in seen])
@@ -262,8 +274,7 @@ def _filmed(scene: Scene, making: _Making, camerawork: Camerawork) -> _Filmed | 
         }
         group, good = scene.place.partition(".")[0], clip.kind == "designer"
         labels.append((good, *clip.words, group, clip.strength, scene.split, told, guides[k : k + 1]))
-    empty = np.zeros((0, SEGMENTS, size, size, 3), np.uint8)
-    return _Filmed(np.concatenate(frames) if frames else empty, labels)
+    return _Filmed(frames, labels)
 
 
 def _as_seen(scene: Scene, clips: list[Clip], drawn: Seen) -> list[Clip]:

@@ -13,7 +13,7 @@ from runtime.raster.renderer import Renderer
 from runtime.raster.types import STYLES, Camera, Frames, Views
 
 from ..cinema.takes import SAMPLES
-from ..cinema.track import CameraTrack, camera_axes
+from ..cinema.track import CameraTrack
 from ..propose.types import CameraProposal, StoryProposal
 from ..stage.assemble import StagedScene, palettes
 from .guides import About, guides_of, paces_of, pointed, roles_of, room_of
@@ -305,7 +305,7 @@ def _camera(tracks: Sequence[tuple[CameraTrack, NDArray[np.integer]]], optics: b
     blurs = optics and first.focus is not None and float(first.aperture) > 0
     return Camera(
         position=np.concatenate([t.position[f] for t, f in tracks]).astype(np.float32),
-        axes=np.concatenate([camera_axes(t.rotation[f]) for t, f in tracks]).astype(np.float32),
+        axes=np.concatenate([t.axes[f] for t, f in tracks]).astype(np.float32),
         focal=np.concatenate([t.focal[f] for t, f in tracks]).astype(np.float32),
         sensor=first.sensor,
         focus=first.focus[frames].astype(np.float32) if blurs and first.focus is not None else None,

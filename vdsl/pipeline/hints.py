@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from ..cinema.flaws import flaws_by_measure
 from ..cinema.subject import Subject
 from ..cinema.takes import samples
-from ..cinema.track import CameraTrack, camera_axes, project
+from ..cinema.track import CameraTrack, project
 from ..propose.types import CameraProposal
 from .designer import appeal, qualities
 
@@ -56,7 +56,7 @@ def hints_of(cameras: Sequence[CameraProposal]) -> list[dict[str, float]]:
 def _motion(track: CameraTrack) -> dict[str, float]:
     """How a camera goes, turns and zooms, and how it looks."""
     distance = np.maximum(np.linalg.norm(track.look_at - track.position, axis=-1), 0.2)
-    way = camera_axes(track.rotation[0]) @ (track.position[-1] - track.position[0]) / distance[0]
+    way = track.axes[0] @ (track.position[-1] - track.position[0]) / distance[0]
     turn = track.rotation[-1] - track.rotation[0]
     turned = (turn + np.pi) % (2 * np.pi) - np.pi
     seen = np.log(track.focal / distance)  # how large what is aimed at appears
@@ -86,7 +86,7 @@ def frame_hints_of(camera: CameraProposal, subject: Subject, at: NDArray[np.int6
     """
     track = camera.track
     position, rotation, focal = track.position[at], track.rotation[at], track.focal[at]
-    axes = camera_axes(rotation)
+    axes = track.axes[at]
     points = np.stack([subject.landmarks[name][at] for name in _POINTS], axis=1)
     xy, depth = project(points, position, axes, focal, track.sensor)
     place = (2.0 * xy - 1.0) * (1.0, -1.0)

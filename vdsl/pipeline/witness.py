@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from runtime.mesh import Mesh
 
 from ..cinema.subject import Subject
-from ..cinema.track import camera_axes, project
+from ..cinema.track import project
 from ..lang.ir import Shot
 from ..propose.cameras import Filming, find_object, subject_of
 from ..propose.promise import achieved
@@ -191,7 +191,7 @@ def _share(camera: CameraProposal, surface: _Surface | None, ids: NDArray[np.int
         return float("nan")
     track, frames = camera.track, segment_frames(len(camera.track.focal))
     xy, depth = project(
-        surface.points, track.position[frames], camera_axes(track.rotation[frames]), track.focal[frames],
+        surface.points, track.position[frames], track.axes[frames], track.focal[frames],
         track.sensor,
     )  # fmt: skip
     height, width = ids.shape[1:]

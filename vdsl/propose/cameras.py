@@ -51,7 +51,7 @@ _PLAIN = 1.5  # how many of its kind what has no fault may follow, more than wha
 
 @dataclass(frozen=True, eq=False)
 class _Batch:
-    """Candidates of one story, measured, in full those that are good or may be let back in: what was drawn,
+    """Candidates of one story, measured, in full those that may be offered: what was drawn,
     tracks [P], in which sampled frames they are meant to show their subject [P, F], why each is thrown out,
     and how grave all its faults together are."""
 
@@ -80,7 +80,8 @@ def propose_cameras(shot: Shot, stories: Sequence[StoryProposal], filming: Filmi
     def consider(sample: Sample) -> None:
         nonlocal considered
         considered += len(sample.story)
-        batches.extend(_consider(shot, stories, subjects, stages, filming, sample, rejected))
+        lacking = few - _good(batches)
+        batches.extend(_consider(shot, stories, subjects, stages, filming, sample, rejected, lacking))
 
     for number in range(_ROUNDS + 1):
         good = _good(batches)
@@ -153,14 +154,19 @@ def _consider(
     filming: Filming,
     sample: Sample,
     rejected: Counter[str],
+    lacking: int,
 ) -> list[_Batch]:
-    """Shoot, measure and judge candidates; counts those to be thrown out in ``rejected``."""
-    out = []
+    """Shoot, measure and judge candidates; counts those to be thrown out in ``rejected``.
+
+    lacking: how many good ones there have to be that none is let back in
+    """
+    out: list[_Batch] = []
     for s, subject in enumerate(subjects):
         rows = np.flatnonzero(sample.story == s)
         if not len(rows):
             continue
-        tried = try_cameras(shot, stories[s], subject, stages[s], filming, sample, rows)
+        left = lacking - _good(out)
+        tried = try_cameras(shot, stories[s], subject, stages[s], filming, sample, rows, left)
         rejected.update(REASONS[k] for k in np.delete(tried.reason, tried.kept))
         if tried.measured is None:
             continue
@@ -178,7 +184,8 @@ class Tried:
     """Candidates of one story looked at.
 
     reason: [P] index into REASONS, −1 for the good ones; kept: those that have room
-    measured: those alone, None where there are none; in full those that are good or may be let back in
+    measured: those alone, None where there are none; in full those that are good, and while too few are those
+        that may be let back in
     window: the sampled frames in which those that have room are meant to show their subject
     """
 
@@ -197,8 +204,12 @@ def try_cameras(
     filming: Filming,
     sample: Sample,
     rows: NDArray[np.int64],
+    lacking: int = _FEW,
 ) -> Tried:
-    """Shoot the sampled rows on one story; what has room is measured and judged."""
+    """Shoot the sampled rows on one story; what has room is measured and judged.
+
+    lacking: with how many good ones nothing will be let back in
+    """
     shooting = shoot(shot, subject, sample, rows, filming.rig, filming.sensor, filming.fps)
     foci = foci_of(shot, subject, story, filming)
     shooting = focused(shooting, shot, foci, filming.fps)
@@ -215,8 +226,9 @@ def try_cameras(
 
     def hopeful(first: Measured) -> NDArray[np.bool_]:
         """Note why each is thrown out; of what may be offered after all, all is to be measured."""
-        reason[kept] = reasons(left, first, subject)
-        return np.isin(reason[kept], (-1, *SOFT))
+        found = reason[kept] = reasons(left, first, subject)
+        enough = foci.end is None and (found < 0).sum() >= lacking  # of a rack some are still to go
+        return np.isin(found, (-1,) if enough else (-1, *SOFT))
 
     measured = measure(takes, subject, filming.world, filming.fps, hopeful)
     if foci.end is not None:

@@ -7,9 +7,9 @@ is performed the same way.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
-from itertools import product
+from itertools import chain, product
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,7 +23,6 @@ from runtime.world import World
 from ..lang.definitions.action import ActionDef
 from ..lang.diagnostics import Report
 from ..lang.ir import Shot, StoryLine
-from ..library import Catalog
 from ..stage.actions import build_clip
 from .advice import advise, advise_on_faults, is_faultless
 from .arriving import arrival, shows_arrival
@@ -35,7 +34,17 @@ from .state import SceneState, opening_state
 from .tasks import Errand, as_said, disc, errand, speaking
 from .types import STILL, Performance, ProposalGrid, StoryProposal
 
-__all__ = ["SceneState", "Told", "advance", "film", "opening_state", "propose", "propose_story", "tell"]
+__all__ = [
+    "Begun",
+    "SceneState",
+    "Told",
+    "begin",
+    "film",
+    "opening_state",
+    "propose",
+    "propose_story",
+    "tell",
+]
 
 MOST = 4  # story proposals a line: more are ways nobody would tell apart
 _STILL = 4.0  # seconds of a shot in which nobody does anything, where the script does not say
@@ -49,6 +58,40 @@ class Told:
     end: SceneState
 
 
+@dataclass(frozen=True, eq=False)
+class Begun:
+    """A line performed in the first of its ways, which is all that its end takes.
+
+    state: the one it starts from; first: variant, path and motion
+    """
+
+    state: SceneState
+    errands: dict[str, Errand]
+    first: tuple[str, int, SceneMotion]
+
+    @property
+    def end(self) -> SceneState:
+        """The state it ends in, whichever way it is performed."""
+        motion = self.first[2]
+        opened = {k: p.open for k, p in motion.end_props.items() if p.hinge is not None}
+        world = self.state.world.opened(opened)
+        return replace(self.state, world=world, actors=motion.end_actors, props=motion.end_props)
+
+
+def begin(
+    state: SceneState,
+    line: StoryLine,
+    filming: Filming,
+    report: Report | None = None,
+    shot: Shot | None = None,
+) -> Begun:
+    """Perform a line in its first way. report, shot: as for :func:`tell`"""
+    shot = shot if shot is not None else _first_of(line)
+    state = beholding(with_things_at_hand(state, line, filming.catalog), line)
+    errands = _errands(state, line, filming, shot, report if report is not None else Report())
+    return Begun(state, errands, next(_motions(state, errands, filming, shot, _ways(errands, 1))))
+
+
 def tell(
     state: SceneState,
     line: StoryLine,
@@ -56,45 +99,50 @@ def tell(
     report: Report | None = None,
     shot: Shot | None = None,
     most: int = MOST,
+    begun: Begun | None = None,
 ) -> Told:
     """Perform a line in up to ``most`` ways.
 
     shot: whose duration, speed and speech count (the first of the line's if None), and whose camera says from
-        where on the line is shown
+        where on the line is shown; begun: what :func:`begin` made of the same, where that is at hand
     What cannot be done is reported and left out: the person idles instead.
     """
-    report = report if report is not None else Report()
+    begun = begun if begun is not None else begin(state, line, filming, report, shot)
     cuts = shot is not None and filming.rig != "paper" and shows_arrival(shot)
-    shot = shot if shot is not None else (line.shots[0] if line.shots else None)
-    state = beholding(with_things_at_hand(state, line, filming.catalog), line)
-    errands = _errands(state, line, filming, shot, report)
-    cuts, proposals, end = cuts and _comes_first(line, errands, filming), [], state
-    for index, (name, path, motion) in enumerate(_motions(state, errands, filming, shot, most)):
-        if index == 0:
-            opened = {k: p.open for k, p in motion.end_props.items() if p.hinge is not None}
-            world = state.world.opened(opened)
-            end = replace(state, world=world, actors=motion.end_actors, props=motion.end_props)
-        begin = arrival(motion.position[next(iter(errands))], filming.fps) if cuts else 0
-        proposals.append(_proposal(index, name, path, motion, _interest(errands, motion, state.world), begin))
-    return Told(tuple(proposals), end)
+    shot = shot if shot is not None else _first_of(line)
+    state, errands = begun.state, begun.errands
+    cuts, proposals = cuts and _comes_first(line, errands, filming), []
+    further = _motions(state, errands, filming, shot, _ways(errands, most)[1:])
+    for index, (name, path, motion) in enumerate(chain([begun.first], further)):
+        start = arrival(motion.position[next(iter(errands))], filming.fps) if cuts else 0
+        proposals.append(_proposal(index, name, path, motion, _interest(errands, motion, state.world), start))
+    return Told(tuple(proposals), begun.end)
+
+
+def _first_of(line: StoryLine) -> Shot | None:
+    return line.shots[0] if line.shots else None
 
 
 def motions(
     state: SceneState, line: StoryLine, filming: Filming, report: Report, most: int = MOST
 ) -> list[tuple[str, SceneMotion]]:
     """The motions :func:`tell` makes of a line, by the names of their variants, with all the engine says."""
-    shot = line.shots[0] if line.shots else None
-    state = beholding(with_things_at_hand(state, line, filming.catalog), line)
-    errands = _errands(state, line, filming, shot, report)
-    return [(name, motion) for name, _, motion in _motions(state, errands, filming, shot, most)]
+    begun = begin(state, line, filming, report)
+    ways = _ways(begun.errands, most)[1:]
+    further = _motions(begun.state, begun.errands, filming, _first_of(line), ways)
+    return [(name, motion) for name, _, motion in chain([begun.first], further)]
 
 
 def _motions(
-    state: SceneState, errands: dict[str, Errand], filming: Filming, shot: Shot | None, most: int
+    state: SceneState,
+    errands: dict[str, Errand],
+    filming: Filming,
+    shot: Shot | None,
+    ways: Iterable[tuple[int, int]],
 ) -> Iterator[tuple[str, int, SceneMotion]]:
     """Variant, path and motion of every way."""
     seed = int(generator(filming.seed, shot.drawn_as if shot else "", "performance").integers(2**31))
-    for variant, path in _ways(errands, most):
+    for variant, path in ways:
         motion = _perform(state, errands, filming.skeletons, (variant, path), filming.fps, seed, shot)
         name = next(iter(errands.values())).task.clip.variants[variant].name if errands else STILL
         yield name, path, motion
@@ -109,13 +157,6 @@ def propose_story(
 ) -> tuple[StoryProposal, ...]:
     """The story proposals of a line: clip variants times paths."""
     return tell(state, line, filming, report, shot).proposals
-
-
-def advance(
-    state: SceneState, line: StoryLine, catalog: Catalog, filming: Filming, report: Report
-) -> SceneState:
-    """The state a line leaves its scene in; reports what cannot be done."""
-    return tell(state, line, replace(filming, catalog=catalog), report, most=1).end
 
 
 def propose(

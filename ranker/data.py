@@ -169,7 +169,7 @@ class ShardWriter:
             return
         base = self.folder / f"shard-{self._next:05d}"
         ordered = sorted(self._pending, key=lambda clip: clip[0].bare)
-        lines = "".join(json.dumps(asdict(label), ensure_ascii=False) + "\n" for label, _ in ordered)
+        lines = "".join(json.dumps(vars(label), ensure_ascii=False) + "\n" for label, _ in ordered)
         part = self.folder / f".{base.name}.npy.part"
         try:
             with part.open("wb") as file:  # one after the other: together they would be copied twice

@@ -21,7 +21,7 @@ from vdsl.pipeline.clips import BAR, Clip, clips_of, moves
 from vdsl.pipeline.designer import judged, picks
 from vdsl.pipeline.hints import frame_hints_of, hints_of
 from vdsl.pipeline.labels import WORDS, classes
-from vdsl.pipeline.perturb import mistyped, perturbed
+from vdsl.pipeline.perturb import mistyped, perturbation
 from vdsl.pipeline.script import check_source
 from vdsl.pipeline.stories import places, random_story, split_of
 from vdsl.propose.cameras import measured_anew
@@ -41,7 +41,7 @@ def test_strength_grades_how_far_a_negative_is_off():
     track = _track()
 
     def off(strength: float, seed: int) -> float:
-        spoilt = perturbed(track, strength, np.random.default_rng(seed))
+        spoilt = perturbation(strength, np.random.default_rng(seed))(track)
         moved = np.linalg.norm(spoilt.position - track.position, axis=1).max()
         turned = np.abs(spoilt.rotation - track.rotation).max()
         return float(moved + turned + np.abs(np.log(spoilt.focal / track.focal)).max())
@@ -54,7 +54,7 @@ def test_strength_grades_how_far_a_negative_is_off():
 
 def test_negatives_stay_above_the_floor_and_keep_their_length():
     for seed in range(30):
-        spoilt = perturbed(_track(), 1.0, np.random.default_rng(seed))
+        spoilt = perturbation(1.0, np.random.default_rng(seed))(_track())
         assert spoilt.position[:, 2].min() >= 0.08
         assert spoilt.position.shape == (40, 3)
         assert (spoilt.focal > 0).all()

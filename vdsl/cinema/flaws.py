@@ -10,6 +10,8 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import NDArray
 
+from .vectors import clamped
+
 Measures = Mapping[str, NDArray[np.float64] | float]
 
 #: What is a fault: (criterion, measure, the least or the most of it that will do, and what of it could not be
@@ -45,6 +47,9 @@ MOST = (
 #: Measures of which no picture tells: how near the walls around the camera are, and whether size and view are
 #: those that were asked for.
 UNSEEN = ("clearance", "size_error", "view")
+#: All bounds, fault by fault.
+_BOUNDS = (*LEAST, *MOST)
+_LIMIT, _WORST = (np.array([entry[k] for entry in _BOUNDS]) for k in (2, 3))
 CRITERIA = ("visibility", "framing", "headroom", "lead_room", "thirds", "clearance", "steadiness")
 
 
@@ -60,17 +65,33 @@ def flaws(measures: Measures, seen: bool = False) -> dict[str, NDArray[np.bool_]
 
 def flaws_by_measure(measures: Measures) -> dict[str, NDArray[np.bool_]]:
     """By the name of a measure, which of the takes [P] have a fault in it."""
-    m = {k: np.asarray(v, float) for k, v in measures.items()}
-    least = {name: m[name] < bound for _, name, bound, _ in LEAST}
-    return least | {name: m[name] > bound for _, name, bound, _ in MOST}
+    found = _found(_told(measures))
+    return {name: found[k] for k, (_, name, *_) in enumerate(_BOUNDS)}
 
 
 def gravity(measures: Measures) -> dict[str, NDArray[np.float64]]:
     """By criterion, how grave the fault of takes [P] in it is: 0 for none, 1 for one that is hardly one, and
     up to 2 for what could not be worse. Of several faults in a criterion the gravest counts."""
-    found = flaws_by_measure(measures)
-    out = {name: np.zeros(np.shape(measures["visibility"])) for name in CRITERIA}
-    for criterion, name, bound, worst in (*LEAST, *MOST):
-        far = np.clip((np.asarray(measures[name], float) - bound) / (worst - bound), 0.0, 1.0)
-        out[criterion] = np.maximum(out[criterion], np.where(found[name], 1.0 + far, 0.0))
-    return out
+    told = _told(measures)
+    far = clamped((told - _beside(_LIMIT, told)) / _beside(_WORST - _LIMIT, told), 0.0, 1.0)
+    grave = np.where(_found(told), 1.0 + far, 0.0)
+    return {name: grave[rows].max(axis=0) for name, rows in _OF.items()}
+
+
+#: Rows of the bounds that belong to a criterion.
+_OF = {name: [k for k, entry in enumerate(_BOUNDS) if entry[0] == name] for name in CRITERIA}
+
+
+def _told(measures: Measures) -> NDArray[np.float64]:
+    """What there are bounds of, [N, ...]."""
+    return np.array([measures[name] for _, name, *_ in _BOUNDS], float)
+
+
+def _found(told: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """Which is a fault, [N, ...]."""
+    limit, least = _beside(_LIMIT, told), len(LEAST)
+    return np.concatenate([told[:least] < limit[:least], told[least:] > limit[least:]])
+
+
+def _beside(bounds: NDArray[np.float64], told: NDArray[np.float64]) -> NDArray[np.float64]:
+    return bounds.reshape(-1, *[1] * (told.ndim - 1))

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from .framing import Array
 from .subject import Subject
 from .takes import Bools, Picture, Takes, mean_of
-from .vectors import dot, length
+from .vectors import clamped, dot, length
 
 _HANGS = 0.26  # of the standing height from the collar down, as far as idle hands are at least
 _CHEST = 0.075  # half of the trunk's breadth, of the standing height
@@ -94,7 +94,7 @@ def gesture_lost(
     clear = np.zeros(depth.shape)
     for side, name in enumerate(("hand_l", "hand_r")):
         beside = _off(picture.of(name) * metres, waist, chin) / subject.height
-        plain = np.clip((beside - _WITHIN) / (_PLAIN - _WITHIN), 0.0, 1.0)
+        plain = clamped((beside - _WITHIN) / (_PLAIN - _WITHIN), 0.0, 1.0)
         clear = np.maximum(clear, np.where(works[:, side] & shown[..., side], plain, 0.0))
     asked = (works[:, 0] | works[:, 1]) & takes.window
     return np.where(_shows_hands(takes) & asked.any(axis=1), 1.0 - mean_of(clear, asked), 0.0)
@@ -118,7 +118,7 @@ def _shows_hands(takes: Takes) -> Bools:
 def _off(point: Array, begin: Array, end: Array) -> Array:
     """Distance [P, F] of points [P, F, 2] to lines from ``begin`` to ``end``."""
     way = end - begin
-    along = np.clip(dot(point - begin, way) / np.maximum(dot(way, way), 1e-9), 0.0, 1.0)
+    along = clamped(dot(point - begin, way) / np.maximum(dot(way, way), 1e-9), 0.0, 1.0)
     return length(point - begin - along[..., None] * way)
 
 
@@ -188,7 +188,7 @@ def _apart(camera: Array, ray: Array, begin: Array, limb: Array) -> Array:
     a, e, f = dot(ray, ray), np.maximum(dot(limb, limb), 1e-9), dot(limb, start)
     b, c = dot(ray, limb), dot(ray, start)
     spread = np.maximum(a * e - b * b, 1e-9)
-    along = np.clip((b * f - c * e) / spread, 0.0, 1.0)  # of the ray, where lines are nearest
-    down = np.clip((b * along + f) / e, 0.0, 1.0)  # of the limb
-    along = np.clip((b * down - c) / np.maximum(a, 1e-9), 0.0, 1.0)
+    along = clamped((b * f - c * e) / spread, 0.0, 1.0)  # of the ray, where lines are nearest
+    down = clamped((b * along + f) / e, 0.0, 1.0)  # of the limb
+    along = clamped((b * down - c) / np.maximum(a, 1e-9), 0.0, 1.0)
     return length(start + along[..., None] * ray - down[..., None] * limb)

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from runtime.world import Solids, World
 
-from .vectors import dot, length
+from .vectors import clamped, dot, length
 
 Array = NDArray[np.float64]
 Bools = NDArray[np.bool_]
@@ -240,7 +240,7 @@ def clear_of_people(camera: Array, points: Array, bodies: list[tuple[Array, Arra
         ray = ends[..., :2] - eye
         start = foot[None, :, None, :2] - eye
         square = np.maximum(dot(ray, ray), 1e-9)
-        t = np.clip(dot(start, ray) / square, 0.0, 1.0)
+        t = clamped(dot(start, ray) / square, 0.0, 1.0)
         away = length(start - t[..., None] * ray)
         height = camera[:, :, None, 2] + t * (ends[..., 2] - camera[:, :, None, 2])
         seen &= ~((away < radius) & (height < crown[None, :, None, 2]) & (t < 0.97))

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from runtime.world import Solids, World
 
-from .vectors import dot, length
+from .vectors import clamped, dot, length
 
 Array = NDArray[np.float64]
 
@@ -105,7 +105,7 @@ def to_people(camera: Array, bodies: list[tuple[Array, Array, float]]) -> Array:
         axis = crown - foot
         square = np.maximum(dot(axis, axis), 1e-9)
         start = camera - foot
-        t = np.clip(dot(start, axis) / square, 0.0, 1.0)
+        t = clamped(dot(start, axis) / square, 0.0, 1.0)
         away = length(start - t[..., None] * axis) - radius
         np.minimum(best, away.min(axis=1), out=best)
     return best

@@ -1,4 +1,5 @@
-"""Products of many short vectors at once; numpy's own reductions are slow over an axis of two or three."""
+"""Products of many short vectors, and bounds of few numbers: numpy's own reductions are slow over an axis of two
+or three, and so is its ``clip`` of little."""
 
 from __future__ import annotations
 
@@ -11,6 +12,11 @@ Array = NDArray[np.float64]
 def dot(a: Array, b: Array) -> Array:
     """[..., K], [..., K] -> [...], broadcast."""
     return np.asarray(np.einsum("...i,...i->...", a, b))
+
+
+def clamped(values: Array, low: float, high: float) -> Array:
+    """Values within bounds, of any shape."""
+    return np.minimum(np.maximum(values, low), high)
 
 
 def length(vectors: Array) -> Array:

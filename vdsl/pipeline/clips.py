@@ -8,8 +8,9 @@ that a label of movement, size or angle is what the track itself reads as.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
+from functools import partial
 
 import numpy as np
 
@@ -26,7 +27,7 @@ from .filming import segment_frames
 from .guides import About, about_of
 from .hints import frame_hints_of, meant
 from .labels import classes
-from .perturb import mistyped, perturbed
+from .perturb import mistyped, perturbation
 
 _PICKS = 4  # of each shot
 #: Appeal below which nothing is picked, as good as the rest may be.
@@ -179,7 +180,7 @@ class _Attempts:
     kind: str
     least: float
     strengths: list[float]
-    tracks: list[CameraTrack]
+    tracks: Sequence[Callable[[], CameraTrack]]
     bare: bool
 
 
@@ -192,15 +193,20 @@ def _attempts(
     bare: bool = False,
 ) -> _Attempts:
     """Ways to spoil a good take, of a kind or of any."""
+    tracks: list[partial[CameraTrack]]
     kind = kind or _KINDS[int(rng.random() < _MISTYPED)]
     if kind == "mistyped":
         strengths = [_MISTYPED_STRENGTH] * len(_TRIES)
-        tracks = [mistyped(good.track, rng) for _ in strengths]
+        tracks = [partial(_as_it_is, mistyped(good.track, rng)) for _ in strengths]
     else:
         drawn = float(rng.uniform(0.1, 1.0))
         strengths = [max(drawn, least) for least in _TRIES]
-        tracks = [perturbed(good.track, strength, rng) for strength in strengths]
+        tracks = [partial(perturbation(strength, rng), good.track) for strength in strengths]
     return _Attempts(pick, good, kind, min(BAR, (1.0 - _LOST) * appeal), strengths, tracks, bare)
+
+
+def _as_it_is(track: CameraTrack) -> CameraTrack:
+    return track
 
 
 def _spoilt(scene: Scene, shot: Shot, grid: ProposalGrid, attempts: Sequence[_Attempts]) -> list[Clip | None]:
@@ -211,7 +217,7 @@ def _spoilt(scene: Scene, shot: Shot, grid: ProposalGrid, attempts: Sequence[_At
     for turn in range(len(_TRIES)):
         for story in sorted({attempts[k].good.story for k in open_}):
             some = [k for k in open_ if attempts[k].good.story == story]
-            tried = [replace(attempts[k].good, track=attempts[k].tracks[turn]) for k in some]
+            tried = [replace(attempts[k].good, track=attempts[k].tracks[turn]()) for k in some]
             tried = measured_anew(shot, grid.story[story], scene.filming, tried)
             for k, camera, thought in zip(some, tried, judged(tried), strict=True):
                 found[k] = _worse(scene, shot, grid, attempts[k], turn, camera, float(thought))

@@ -50,8 +50,9 @@ _RECIPE = 39
 _PROPOSALS, _MANY, _EVERY = 8, 32, 5
 _DRAWN_AT_ONCE = 64
 _SHARD = 64
-#: Processes at most, and stories that each has waiting: a story's pictures take up to 80 MB.
-_PROCESSES, _WAITING = 16, 2
+#: Processes at most, and stories that each may be ahead by, since one takes up to eight times as long as
+#: another. They wait on disk.
+_PROCESSES, _WAITING = 16, 3
 
 
 @dataclass(frozen=True, eq=False)

@@ -63,4 +63,7 @@ def _pictures(
     if item is not None:
         kind[item.id] = Pictures.NOTHING
     over = tuple(shot.whose) if shot.view == "ots" else ()
-    return Pictures(depth[:, at], kind[ids[:, at]], people, over)
+    shown = kind.take(ids)
+    if not np.array_equal(at, np.arange(len(judged))):
+        depth, shown = depth[:, at], shown[:, at]
+    return Pictures(depth, shown, people, over)

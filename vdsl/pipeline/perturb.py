@@ -6,6 +6,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -18,26 +19,37 @@ from ..cinema.track import CameraTrack, look_at_rotation
 _SHIFT, _AIM, _ROLL, _FOCAL = 0.9, np.deg2rad(28.0), np.deg2rad(22.0), 0.8
 _SHAKE_POSITION, _SHAKE_AIM = 0.18, np.deg2rad(9.0)
 _LOWEST = 0.08  # metres above the floor
+_WAVES = (1, 2, 3, 7, 11)  # of noise, in a take
 
 
-def perturbed(track: CameraTrack, strength: float, rng: np.random.Generator) -> CameraTrack:
-    """The track with some of its seven numbers off, by up to ``strength`` (0..1)."""
-    frames = len(track.focal)
+def perturbation(strength: float, rng: np.random.Generator) -> Callable[[CameraTrack], CameraTrack]:
+    """What puts some of a track's seven numbers off, by up to ``strength`` (0..1): all that is left to chance
+    is drawn, and most of the work is still to do."""
     which = rng.random(5) < 0.55
     if not which.any():
         which[rng.integers(5)] = True
     shift, aim, roll, focal, shake = which * strength
-    reach = float(np.linalg.norm(track.look_at[0] - track.position[0]))
-    position = track.position + shift * _SHIFT * reach * _unit(rng)
-    position = position + shake * _SHAKE_POSITION * _noise(rng, frames)
-    position[:, 2] = np.maximum(position[:, 2], _LOWEST)
-    rotation = track.rotation.copy()
-    rotation[:, 0] += _ROLL * roll * rng.choice((-1, 1)) * rng.uniform(0.5, 1)
-    rotation[:, 1] += _AIM * aim * 0.7 * rng.choice((-1, 1)) * rng.uniform(0.4, 1)
-    rotation[:, 2] += _AIM * aim * rng.choice((-1, 1)) * rng.uniform(0.4, 1)
-    rotation[:, 1:] += shake * _SHAKE_AIM * _noise(rng, frames)[:, :2]
+    aside, wobble = _unit(rng), rng.random((len(_WAVES), 3))
+    leans = _ROLL * roll * rng.choice((-1, 1)) * rng.uniform(0.5, 1)
+    tilts = _AIM * aim * 0.7 * rng.choice((-1, 1)) * rng.uniform(0.4, 1)
+    pans = _AIM * aim * rng.choice((-1, 1)) * rng.uniform(0.4, 1)
+    judder = rng.random((len(_WAVES), 3))
     scale = np.exp(_FOCAL * focal * rng.choice((-1, 1)) * rng.uniform(0.4, 1))
-    return CameraTrack(position, rotation, track.focal * scale, track.look_at, track.sensor)
+
+    def of(track: CameraTrack) -> CameraTrack:
+        frames = len(track.focal)
+        reach = float(np.linalg.norm(track.look_at[0] - track.position[0]))
+        position = track.position + shift * _SHIFT * reach * aside
+        position = position + shake * _SHAKE_POSITION * _noise(wobble, frames)
+        position[:, 2] = np.maximum(position[:, 2], _LOWEST)
+        rotation = track.rotation.copy()
+        rotation[:, 0] += leans
+        rotation[:, 1] += tilts
+        rotation[:, 2] += pans
+        rotation[:, 1:] += shake * _SHAKE_AIM * _noise(judder, frames)[:, :2]
+        return CameraTrack(position, rotation, track.focal * scale, track.look_at, track.sensor)
+
+    return of
 
 
 def mistyped(track: CameraTrack, rng: np.random.Generator) -> CameraTrack:
@@ -87,8 +99,9 @@ def _unit(rng: np.random.Generator) -> NDArray[np.float64]:
     return np.asarray(v / np.linalg.norm(v))
 
 
-def _noise(rng: np.random.Generator, frames: int) -> NDArray[np.float64]:
-    """Band-limited noise [T, 3] of unit size: three slow waves and two quick ones."""
+def _noise(phases: NDArray[np.float64], frames: int) -> NDArray[np.float64]:
+    """Band-limited noise [T, 3] of unit size: three slow waves and two quick ones, which begin at ``phases``
+    [5, 3] of a turn."""
     t = np.arange(frames)[:, None] / max(frames, 1)
-    waves = [np.sin(2 * np.pi * (k * t + rng.random(3))) / k**0.5 for k in (1, 2, 3, 7, 11)]
+    waves = [np.sin(2 * np.pi * (k * t + phase)) / k**0.5 for k, phase in zip(_WAVES, phases, strict=True)]
     return np.asarray(sum(waves) / 2.0)

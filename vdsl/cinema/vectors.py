@@ -1,5 +1,5 @@
-"""Products of many short vectors, and bounds of few numbers: numpy's own reductions are slow over an axis of two
-or three, and so is its ``clip`` of little."""
+"""Products of many short vectors, and bounds of few numbers: over an axis of two or three numpy's own
+reductions are slow, and so is its ``clip`` of little."""
 
 from __future__ import annotations
 

@@ -3,15 +3,23 @@ reductions are slow, and so is its ``clip`` of little."""
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from numpy.typing import NDArray
+
+einsum: Any = np.einsum
+try:  # what that comes to where nothing is to be optimised; of few numbers, its own checks take half the time
+    from numpy._core.multiarray import c_einsum as einsum
+except ImportError:  # numpy 1
+    pass
 
 Array = NDArray[np.float64]
 
 
 def dot(a: Array, b: Array) -> Array:
     """[..., K], [..., K] -> [...], broadcast."""
-    return np.asarray(np.einsum("...i,...i->...", a, b))
+    return np.asarray(einsum("...i,...i->...", a, b))
 
 
 def clamped(values: Array, low: float, high: float) -> Array:

@@ -241,6 +241,12 @@ class World:
     levels: tuple[Level, ...] = ()
     stairs: tuple[Stairs, ...] = ()
 
+    @cached_property
+    def wall_ends(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Where its wild walls begin and where they end on the floor plan, [W, 2] each."""
+        low, high = ([getattr(wall, end) for wall in self.walls] for end in ("low", "high"))
+        return np.array(low, float).reshape(-1, 2), np.array(high, float).reshape(-1, 2)
+
     @property
     def storeys(self) -> tuple[Level, ...]:
         """Its levels; all floors at 0 where none are given."""

@@ -29,8 +29,7 @@ def hidden_walls(world: World, camera: Array, subject: Array, corners: Array) ->
     """
     if not world.walls:
         return np.zeros((len(camera), 0), bool)
-    low = np.array([w.low for w in world.walls])
-    high = np.array([w.high for w in world.walls])
+    low, high = world.wall_ends
     along = high - low
     eye = camera[..., None, :2]
     heart = np.broadcast_to(subject[None, :, None, :2], (*camera.shape[:2], 1, 2))
@@ -64,8 +63,7 @@ def backdrop_gaps(world: World, hidden: Bools, camera: Array, subject: Array, ra
     some = hidden.any(axis=1)
     hidden, camera, rays = hidden[some, None, None, :], camera[some, :, None, :2], rays[some]
     heart = subject[None, :, None, :2]
-    low = np.array([w.low for w in world.walls])
-    high = np.array([w.high for w in world.walls])
+    low, high = world.wall_ends
     met = _meetings(low, high, camera, rays)
     behind = (met > length(camera - heart)[..., None]) & hidden
     base, tall = np.array([w.base for w in world.walls]), np.array([w.height for w in world.walls])

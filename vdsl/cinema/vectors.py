@@ -3,16 +3,15 @@ reductions are slow, and so is its ``clip`` of little."""
 
 from __future__ import annotations
 
+from contextlib import suppress
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 einsum: Any = np.einsum
-try:  # what that comes to where nothing is to be optimised; of few numbers, its own checks take half the time
+with suppress(ImportError):  # what that calls in the end: with few numbers, its own checks take half the time
     from numpy._core.multiarray import c_einsum as einsum
-except ImportError:  # numpy 1
-    pass
 
 Array = NDArray[np.float64]
 

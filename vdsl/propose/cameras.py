@@ -26,7 +26,7 @@ from ..lang.ir import Shot
 from .candidates import Shooting
 from .drawing import Sample, draw, generator, near, nudged, put_together
 from .focusing import focused, unseen_racks
-from .rejection import REASONS, SOFT, no_room, reasons
+from .rejection import OFFERED, REASONS, no_room, reasons
 from .shooting import shoot
 from .subjects import Filming as Filming
 from .subjects import company_of, foci_of, held_by
@@ -119,7 +119,9 @@ def propose_cameras(shot: Shot, stories: Sequence[StoryProposal], filming: Filmi
 def _soft(batch: _Batch) -> NDArray[np.bool_]:
     """Which candidates [P] may be let back in where hardly anything else is left: of what they are about, at
     least a little is seen."""
-    return np.asarray(np.isin(batch.reason, SOFT) & (batch.measured.values["visibility"] > _GLIMPSE))
+    return np.asarray(
+        OFFERED[batch.reason] & (batch.reason >= 0) & (batch.measured.values["visibility"] > _GLIMPSE)
+    )
 
 
 def _good(batches: Sequence[_Batch]) -> int:
@@ -228,13 +230,13 @@ def try_cameras(
         """Note why each is thrown out; of what may be offered after all, all is to be measured."""
         found = reason[kept] = reasons(left, first, subject)
         enough = foci.end is None and (found < 0).sum() >= lacking  # of a rack some are still to go
-        return np.isin(found, (-1,) if enough else (-1, *SOFT))
+        return found < 0 if enough else OFFERED[found]
 
     measured = measure(takes, subject, filming.world, filming.fps, hopeful)
     if foci.end is not None:
         held = held_by(shot, subject, story, filming, foci)
         lost = unseen_racks(left, foci, held, solids, measured.hidden, at)
-        soft = np.isin(reason[kept], (-1, *SOFT))  # else they might be let back in
+        soft = OFFERED[reason[kept]]  # else they might be let back in
         reason[kept[lost & soft]] = REASONS.index("wrong_movement")
     return Tried(shooting, reason, kept, measured, window)
 

@@ -44,6 +44,8 @@ SOFT = tuple(
         "missing_backdrop",
     )
 )
+#: The same by a reason's number, the last of -1: for all that may be offered.
+OFFERED = np.array([*(number in SOFT for number in range(len(REASONS))), True])
 
 _IN_WALL = 0.06  # metres to a wall's box, drawn or not
 _NEAR_WALL = 0.2  # metres to a wall that is drawn

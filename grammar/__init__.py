@@ -61,19 +61,22 @@ def parser() -> lark.Lark:
     return built
 
 
-def _cache_path() -> Path:
+def cache_folder() -> Path:
+    """The user's folder for what is kept between runs."""
     # platformdirs is not asked: its import costs more than the parser's, and this is all it would say
     if base := os.environ.get("VDSL_CACHE"):
-        folder = Path(base)
-    elif sys.platform == "win32":
-        folder = Path(os.environ.get("LOCALAPPDATA", tempfile.gettempdir())) / "vdsl" / "Cache"
-    elif sys.platform == "darwin":
-        folder = Path("~/Library/Caches/vdsl").expanduser()
-    else:
-        folder = Path(os.environ.get("XDG_CACHE_HOME") or "~/.cache").expanduser() / "vdsl"
+        return Path(base)
+    if sys.platform == "win32":
+        return Path(os.environ.get("LOCALAPPDATA", tempfile.gettempdir())) / "vdsl" / "Cache"
+    if sys.platform == "darwin":
+        return Path("~/Library/Caches/vdsl").expanduser()
+    return Path(os.environ.get("XDG_CACHE_HOME") or "~/.cache").expanduser() / "vdsl"
+
+
+def _cache_path() -> Path:
     key = hashlib.sha256(GRAMMAR_FILE.read_bytes())
     key.update(f"{lark.__version__} {sys.version} {STARTS}".encode())
-    return folder / f"grammar-{key.hexdigest()[:16]}.bin"
+    return cache_folder() / f"grammar-{key.hexdigest()[:16]}.bin"
 
 
 def _write(built: lark.Lark, path: Path) -> None:

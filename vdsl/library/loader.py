@@ -18,6 +18,7 @@ from ..lang.definitions.files import FileDef, character_cast, read_file
 from ..lang.definitions.types import DefinitionBase
 from ..lang.diagnostics import Report
 from ..lang.files import used_scripts
+from ..lang.kept import parsed
 from ..lang.parse import parse_definition
 from ..lang.source import Source
 
@@ -223,8 +224,7 @@ class Catalog:
         source, start, end = found
         key = (source, start, end, kind, name)
         if key not in _parsed:
-            found_wrong = Report()
-            definition = parse_definition(source, kind, name, found_wrong, start, end)
+            definition, found_wrong = parsed(source, kind, name, start, end)
             if definition is None or found_wrong.diagnostics:  # to be reported every time
                 return parse_definition(source, kind, name, self.report, start, end)
             if len(_parsed) >= _PARSED:

@@ -16,7 +16,7 @@ import pickle
 import signal
 import tempfile
 from collections import deque
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Generator, Sequence
 from concurrent.futures import Future, ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import suppress
@@ -121,16 +121,20 @@ def generate(
         if begun >= clips:
             return begun
         making = _Making(seed, device, size, pictures, every)
-        for story in _stories(first, making, processes or min(_cores(), _PROCESSES), folder):
+        stories = _stories(first, making, processes or min(_cores(), _PROCESSES), folder)
+        for story in stories:
             for scene in story:
                 for k, label in enumerate(scene.labels):
                     writer.add(scene.frames[k] if k < len(scene.frames) else None, *label)
             now = perf_counter()
             watcher.advance("clips", sum(len(scene.frames) for scene in story), now - last)
             last = now
-            if writer.pending >= _SHARD or len(writer) + writer.pending >= clips:
+            enough = len(writer) + writer.pending >= clips
+            if enough:
+                stories.close()  # what is still being filmed is not wanted, and would slow down the writing
+            if writer.pending >= _SHARD or enough:
                 writer.flush()
-            if len(writer) >= clips:
+            if enough:
                 break
         return len(writer)
 
@@ -139,7 +143,9 @@ def _cores() -> int:
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
-def _stories(first: int, making: _Making, processes: int, folder: Path) -> Iterator[list[_Filmed]]:
+def _stories(
+    first: int, making: _Making, processes: int, folder: Path
+) -> Generator[list[_Filmed], None, None]:
     """The filmed scenes of all stories from ``first`` on, story by story in their order.
 
     folder: where processes leave for a moment what they filmed. Through a pipe it would go in pieces, and who

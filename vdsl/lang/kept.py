@@ -1,0 +1,130 @@
+"""Definitions as they were parsed, kept on disk between runs: reading them back takes a seventh of the time.
+
+For the library's, of which a script names a few dozen and a training set asks for all. Assumes that the same
+text is parsed the same way by the same code. Guarantees that a file that is damaged, foreign or of other code
+is passed over, that reading one makes nothing but nodes of the syntax tree, that two who write at once do not
+harm each other, and that a disk that refuses costs time alone.
+"""
+
+from __future__ import annotations
+
+import copyreg
+import hashlib
+import io
+import os
+import pickle
+import sys
+import tempfile
+from collections.abc import Callable
+from functools import lru_cache
+from pathlib import Path
+from typing import Any
+
+import lark
+
+import grammar
+
+from . import ast, source
+from .diagnostics import Report
+from .parse import parse_definition
+from .source import Source
+
+#: So many are kept; the longest unused go first.
+MOST = 4096
+#: What parses, besides the grammar.
+_CODE = ("ast.py", "build.py", "layout.py", "parse.py", "source.py")
+_pruned: set[Path] = set()
+
+
+def parsed(
+    text: Source, kind: str, name: str, start: int, end: int, folder: Path | None = None
+) -> tuple[ast.Definition | None, Report]:
+    """A definition as :func:`vdsl.lang.parse.parse_definition` finds it between two offsets, from disk where
+    it was parsed before; and what was wrong with it, of which nothing is kept.
+
+    folder: to keep it in; None for the user's own
+    """
+    report = Report()
+    path = (folder or grammar.cache_folder() / "definitions") / f"{_key(text, kind, name, start, end)}.bin"
+    found = _read(path, text)
+    if found is None:
+        found = parse_definition(text, kind, name, report, start, end)
+        if found is not None and not report.diagnostics:
+            _write(path, found, text)
+    return found, report
+
+
+def _key(text: Source, kind: str, name: str, start: int, end: int) -> str:
+    told = f"{_code()}\0{kind}\0{name}\0{start}\0{text.text[start:end]}"
+    return hashlib.sha256(told.encode("utf-8", "surrogatepass")).hexdigest()[:32]
+
+
+@lru_cache(maxsize=1)
+def _code() -> str:
+    """A digest of what parses."""
+    told = hashlib.sha256(f"{sys.version} {lark.__version__}".encode())
+    for file in (grammar.GRAMMAR_FILE, *(Path(__file__).with_name(name) for name in _CODE)):
+        told.update(file.read_bytes() if file.is_file() else b"")
+    return told.hexdigest()
+
+
+# --- files --------------------------------------------------------------------------------------------------
+
+
+def _here() -> Source:
+    """In a file, the text it is of."""
+    raise pickle.UnpicklingError("a definition without its text")
+
+
+class _Reader(pickle.Unpickler):
+    """Makes nodes of a syntax tree over a text, and nothing else."""
+
+    def __init__(self, file: io.BytesIO, text: Source) -> None:
+        super().__init__(file)
+        self._text = text
+
+    def find_class(self, module: str, name: str) -> Callable[..., Any]:
+        if (module, name) == (__name__, _here.__name__):
+            return lambda: self._text
+        known = {ast.__name__: ast, source.__name__: source}.get(module)
+        found = getattr(known, name, None)
+        if not isinstance(found, type) or found.__module__ != module:
+            raise pickle.UnpicklingError(f"{module}.{name} is no node of a syntax tree")
+        return found
+
+
+def _read(path: Path, text: Source) -> ast.Definition | None:
+    try:
+        found = _Reader(io.BytesIO(path.read_bytes()), text).load()
+    except Exception:  # whatever is wrong with a file, the text itself is at hand
+        return None
+    return found if isinstance(found, ast.Definition) else None
+
+
+def _write(path: Path, definition: ast.Definition, text: Source) -> None:
+    packed = io.BytesIO()
+    writer = pickle.Pickler(packed, pickle.HIGHEST_PROTOCOL)
+    writer.dispatch_table = {**copyreg.dispatch_table, Source: lambda _: (_here, ())}
+    try:
+        writer.dump(definition)
+        path.parent.mkdir(parents=True, exist_ok=True)
+        _prune(path.parent)
+        handle, name = tempfile.mkstemp(dir=path.parent, suffix=".part")
+    except (OSError, RecursionError):
+        return
+    try:
+        with os.fdopen(handle, "wb") as file:
+            file.write(packed.getbuffer())
+        os.replace(name, path)
+    except OSError:
+        Path(name).unlink(missing_ok=True)
+
+
+def _prune(folder: Path) -> None:
+    """Once in a process, remove what is too much."""
+    if folder in _pruned:
+        return
+    _pruned.add(folder)
+    kept = sorted(folder.glob("*.bin"), key=lambda p: p.stat().st_atime)
+    for old in kept[: max(len(kept) - MOST, 0)]:
+        old.unlink(missing_ok=True)

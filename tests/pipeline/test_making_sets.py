@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import pickle
 from concurrent.futures import ThreadPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from functools import partial
@@ -15,7 +14,7 @@ from ranker.data import Dataset
 from ranker.errors import RankerError
 from ranker.guides import MARKS
 from vdsl.pipeline.casting import Troupe
-from vdsl.pipeline.dataset import _Filmed, generate
+from vdsl.pipeline.dataset import _Filmed, _leave, generate
 
 
 def test_a_training_set_is_nearly_half_good_and_goes_on_where_it_stopped(
@@ -150,8 +149,7 @@ def test_a_process_that_is_lost_is_told_and_loses_nothing(
             if number > 0:
                 raise BrokenProcessPool
             label = (True, None, None, None, "kitchen", 0.0, "train", {"story": number})
-            found = [_Filmed(np.zeros((1, 8, 48, 48, 3), np.uint8), [label])]
-            (self.between / "0").write_bytes(pickle.dumps(found))
+            _leave(self.between / "0", [_Filmed([np.zeros((8, 48, 48, 3), np.uint8)], [label])])
             return self.between / "0"
 
     monkeypatch.setattr("vdsl.pipeline.dataset.ProcessPoolExecutor", LostPool)

@@ -10,9 +10,13 @@ import pytest
 from filmset import shot, skeleton, still_story, world
 
 from vdsl.cinema.flaws import flaws
+from vdsl.cinema.measures import LAST
+from vdsl.cinema.space import stage_of
 from vdsl.propose import cameras as proposing
-from vdsl.propose.cameras import Filming, propose_cameras
+from vdsl.propose.cameras import Filming, propose_cameras, try_cameras
 from vdsl.propose.drawing import draw, generator, near, nudged
+from vdsl.propose.rejection import SOFT
+from vdsl.propose.subjects import subject_of
 from vdsl.propose.types import ProposalGrid
 
 BODY = skeleton()
@@ -87,3 +91,26 @@ def test_what_was_drawn_from_all_around_is_not_nudged_farther() -> None:
     assert np.abs(usual.jitter - 0.5).max() <= 0.5 < widest
     assert np.abs(nudged(around, rng, True).jitter - 0.5).max() == widest
     assert 0.5 < np.abs(nudged(usual, rng, True).jitter - 0.5).max() <= 22.5 / 18.0
+
+
+def test_what_may_be_let_back_in_is_measured_in_full_only_where_too_few_are_good() -> None:
+    asked, story, place = shot("static", "medium"), still_story(BODY), fenced()
+    subject = subject_of(asked, story, place)
+    stage = stage_of(place.world, subject.position[[0, -1]])
+    sample = draw(asked, 1, 400, generator(0, "s1", "test"))
+    enough, too_few = (
+        try_cameras(asked, story, subject, stage, place, sample, np.arange(400), lacking)
+        for lacking in (0, 1000)
+    )
+    np.testing.assert_array_equal(enough.reason, too_few.reason)
+    assert enough.measured is not None
+    assert too_few.measured is not None
+    reason = enough.reason[enough.kept]
+    soft, good = np.isin(reason, SOFT), reason < 0
+    assert soft.any()
+    assert good.any()
+    for name in LAST:
+        some, all_ = enough.measured.values[name], too_few.measured.values[name]
+        np.testing.assert_array_equal(some[good], all_[good])
+        assert np.isnan(some[soft]).all()
+        assert not np.isnan(all_[soft]).any()

@@ -260,3 +260,17 @@ def test_who_is_to_go_and_nobody_says_where_to_goes_some_steps(action: str, goes
         way = story.performances["anna"].position
         assert (float(np.linalg.norm(way[-1] - way[0])) > 1.2) == goes
         assert story.frames > 24
+
+
+def test_a_line_that_is_begun_is_told_as_one_that_is_not() -> None:
+    played = play(FOLLOWED)
+    line, state = played.storyboard.lines[0], played.states[0]
+    begun = begin(state, line, played.filming)
+    told = tell(state, line, played.filming, begun=begun)
+    anew = tell(state, line, played.filming)
+    assert len(told.proposals) == len(anew.proposals) > 1
+    for one, other in zip(told.proposals, anew.proposals, strict=True):
+        assert (one.variant, one.path, one.frames) == (other.variant, other.path, other.frames)
+        for name, moves in one.performances.items():
+            np.testing.assert_array_equal(moves.world_from_joint, other.performances[name].world_from_joint)
+    np.testing.assert_array_equal(told.end.actors["anna"].position, played.states[1].actors["anna"].position)

@@ -102,7 +102,7 @@ class Troupe:
 
 @contextmanager
 def _nothing_collected() -> Iterator[None]:
-    """While much is read that stays: Python would look for what could go, in vain and for longer than it reads."""
+    """While much is read that stays: Python looks in vain, and longer than it reads, for what could go."""
     was = gc.isenabled()
     gc.disable()
     try:

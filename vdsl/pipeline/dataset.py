@@ -196,13 +196,7 @@ def _settle(places: Queue[int], making: _Making, between: Path) -> None:
 
     def left(number: int) -> Path:
         path = between / str(number)
-        scenes = film(number)
-        with path.with_suffix(".frames").open("wb") as file:
-            for scene in scenes:
-                file.writelines(np.ascontiguousarray(clip).data for clip in scene.frames)
-        with path.open("wb") as file:
-            told = [(len(scene.frames), scene.labels) for scene in scenes]
-            pickle.dump(told, file, pickle.HIGHEST_PROTOCOL)
+        _leave(path, film(number))
         return path
 
     _here.append(left)
@@ -210,6 +204,16 @@ def _settle(places: Queue[int], making: _Making, between: Path) -> None:
 
 def _film_here(number: int) -> Path:
     return _here[0](number)
+
+
+def _leave(path: Path, scenes: list[_Filmed]) -> None:
+    """Write a story for :func:`_taken`."""
+    with path.with_suffix(".frames").open("wb") as file:
+        for scene in scenes:
+            file.writelines(np.ascontiguousarray(clip).data for clip in scene.frames)
+    with path.open("wb") as file:
+        told = [(len(scene.frames), scene.labels) for scene in scenes]
+        pickle.dump(told, file, pickle.HIGHEST_PROTOCOL)
 
 
 def _taken(path: Path, size: int) -> list[_Filmed]:

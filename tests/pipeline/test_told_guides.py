@@ -124,7 +124,7 @@ def test_marks_are_where_the_subject_is_and_what_is_before_it(camerawork: Camera
     seen = camerawork.judge_frames(act.staged, "board", grid.story, (camera,), about=[about])
     assert seen.guides is not None
     told = {name: seen.guides.marks[0, :, k].astype(float) for k, name in enumerate(MARKS)}
-    known = frame_hints_of(camera, subject, at)
+    (known,) = frame_hints_of([camera], subject, at)
     for mark, hint in (("right_eyes", "right_eyes"), ("up_crown", "crown"), ("right_face", "right_face")):
         np.testing.assert_allclose(told[mark], known[hint], atol=3e-3)
     for mark, hint in (("size", "size"), ("lens", "lens"), ("over", "over"), ("right_roll", "right_roll")):

@@ -349,11 +349,12 @@ def test_frame_hints_say_where_the_subject_is_and_are_mirrored_with_it() -> None
         rotation=track.rotation * (-1, 1, -1),
     )
     camera = CameraProposal(**dict.fromkeys((f.name for f in fields(CameraProposal)), None))  # type: ignore[arg-type]
-    here = frame_hints_of(replace(camera, track=track), subject(0.4, 1.0), at)
-    there = frame_hints_of(replace(camera, track=other), subject(0.4, -1.0), at)
+    (here,) = frame_hints_of([replace(camera, track=track)], subject(0.4, 1.0), at)
+    (there,) = frame_hints_of([replace(camera, track=other)], subject(0.4, -1.0), at)
     for name, values in here.items():
         sign = -1 if name.startswith(MIRRORED) else 1
         np.testing.assert_allclose(there[name], np.multiply(values, sign), atol=2e-3, err_msg=name)
     assert (np.array(here["crown"]) > np.array(here["feet"])).all()
     behind = replace(track, rotation=track.rotation + np.array((0, 0, np.pi)))
-    assert np.isnan(frame_hints_of(replace(camera, track=behind), subject(0.4, 1.0), at)["right_eyes"]).all()
+    (unseen,) = frame_hints_of([replace(camera, track=behind)], subject(0.4, 1.0), at)
+    assert np.isnan(unseen["right_eyes"]).all()

@@ -6,11 +6,13 @@ the top of hat or hair, each an upright pillar.
 
 from __future__ import annotations
 
+from functools import lru_cache
+
 import numpy as np
 from numpy.typing import NDArray
 
 from .framing import Array
-from .subject import Subject
+from .subject import Subject, marks_at
 from .takes import Bools
 from .vectors import dot, length
 
@@ -27,7 +29,8 @@ _HIPS, _BACK, _APART = 0.35, 0.15, 0.2
 _ALONG = (0.0, 0.5, 1.0)  # of the way from waist to chest
 
 
-def pillars(one: Subject) -> list[Pillar]:
+@lru_cache(maxsize=64)  # asked for again for every few cameras
+def pillars(one: Subject) -> tuple[Pillar, ...]:
     """Somebody as pillars that hide what is behind them."""
     marks, floor = one.landmarks, one.position[:, 2]
     trunk = np.column_stack([marks["waist"][:, :2], marks["collar"][:, 2]])
@@ -36,23 +39,28 @@ def pillars(one: Subject) -> list[Pillar]:
     for shoulder in np.moveaxis(arms[:, :, 0], 1, 0):
         out.append((_down(shoulder, floor), shoulder + np.array((0.0, 0.0, _ARM / 2)), _ARM))
     above = float(length(marks["top"] - marks["crown"]).max())
-    return [*out, (_down(marks["crown"], floor), marks["top"], _SKULL + min(above, _HAT))]
+    return (*out, (_down(marks["crown"], floor), marks["top"], _SKULL + min(above, _HAT)))
 
 
 def behind_own_back(one: Subject, at: NDArray[np.int64], camera: Array) -> Bools:
     """Whether somebody's head is behind their own hips, waist or chest, as of who bends down and away:
     camera [P, F, 3] -> bool [P, F]."""
-    marks = {name: one.landmarks[name][at] for name in ("eyes", "pocket", "waist", "thigh")}
-    waist, chest = marks["waist"], marks["pocket"]
-    hips = waist + _HIPS * (marks["thigh"] - waist)
-    trunk = np.stack([hips, *(waist + share * (chest - waist) for share in _ALONG)], axis=1)  # [F, K, 3]
-    ray = (marks["eyes"] - camera)[:, :, None]
+    trunk = _trunk(one, tuple(at.tolist()))
+    ray = (one.landmarks["eyes"][at] - camera)[:, :, None]
     away = np.maximum(length(ray), 1e-6)
     start = trunk[None] - camera[:, :, None]
     along = dot(start, ray) / away  # metres from the camera
     beside = np.sqrt(np.maximum(dot(start, start) - along**2, 0.0))
     hides = (beside < _BACK) & (along > 0.0) & (along < away - _APART)
     return np.asarray(hides.any(axis=-1))
+
+
+@lru_cache(maxsize=64)
+def _trunk(one: Subject, frames: tuple[int, ...]) -> Array:
+    """Points of somebody's hips, waist and chest, [F, K, 3]; not to be written to."""
+    waist, chest, thigh = np.moveaxis(marks_at(one, ("waist", "pocket", "thigh"), np.array(frames)), 1, 0)
+    hips = waist + _HIPS * (thigh - waist)
+    return np.stack([hips, *(waist + share * (chest - waist) for share in _ALONG)], axis=1)
 
 
 def _down(points: Array, floor: Array) -> Array:

@@ -16,7 +16,7 @@ from .composition import broken
 from .covering import BEFORE, TRUNK, Crowd, behind_heads, covered, crowd_of, crowded
 from .framing import Array
 from .looking import Sight
-from .subject import SIGHT, Subject
+from .subject import SIGHT, Subject, marks_at
 from .takes import Bools, Picture, Takes, mean_of, pictured, remembered, turned, visibility, within
 from .together import turned_among
 from .track import project
@@ -100,7 +100,7 @@ def _beside_it(
     whoever may stand before them, how much the frame or a thing halves the body, 0..1, and how far away it
     is."""
     marks = ("eyes", "chin", "crown", "pocket", "waist")
-    points = np.stack([one.landmarks[name][at] for name in marks], axis=1)
+    points = marks_at(one, marks, at)
     xy, depth = project(points[None], camera, axes, takes.track.focal[:, at], takes.track.sensor)
     far = depth[:, :, marks.index("pocket")]
     wide = takes.track.focal[:, at] / takes.track.sensor[0] / np.maximum(far, BEFORE)
@@ -211,5 +211,5 @@ def _sight(
     """What is seen of somebody in a place: of head and chest, as tables and seats hide the rest."""
     index = [picture.names.index(name) for name in _UPPER]
     inside = within(picture.xy[:, :, index], picture.depth[:, :, index], 0.0)
-    points = np.stack([one.landmarks[name][at] for name in _UPPER], axis=1)
+    points = marks_at(one, _UPPER, at)
     return visibility(takes, inside, looks.clear(points, people=False))

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .framing import Array
-from .subject import Subject
+from .subject import Subject, marks_at
 from .takes import Bools, Picture, Takes, mean_of
 from .vectors import clamped, dot, length
 
@@ -28,6 +28,7 @@ _SKIN = 0.02
 #: Directions to the sides of where a face points, radians, and metres from it, from which one tells how
 #: little of it an action can cover.
 _AROUND, _AWAY = np.radians((-60.0, -30.0, 0.0, 30.0, 60.0)), 2.0
+_HANDS = ("hand_l", "hand_r")
 #: Metres that hands at work go before one asks how much of that is seen.
 _AN_ACT = 0.4
 #: Sizes that show hands at work.
@@ -44,13 +45,12 @@ def hands_missed(takes: Takes, subject: Subject, at: NDArray[np.int64], camera: 
         return np.zeros(len(camera))
     collar = subject.landmarks["collar"][at]
     trunk = subject.landmarks["waist"][at] - collar
-    works, seen = at_work(subject, at), []
-    for side, name in enumerate(("hand_l", "hand_r")):
-        hand = subject.landmarks[name][at]
-        before = _apart(camera, 0.93 * (hand[None] - camera), collar[None], trunk[None])
-        seen.append(works[:, side] & shown[..., side] & (before > _CHEST * subject.height))
+    works, eye = at_work(subject, at), camera[:, :, None]
+    hands = marks_at(subject, _HANDS, at)
+    before = _apart(eye, 0.93 * (hands - eye), collar[:, None], trunk[:, None])
+    seen = works & shown & (before > _CHEST * subject.height)
     asked = (works[:, 0] | works[:, 1]) & takes.window
-    found = (seen[0] | seen[1]) & takes.window
+    found = (seen[..., 0] | seen[..., 1]) & takes.window
     missed = 1.0 - found.sum(axis=1) / np.maximum(asked.sum(axis=1), 1)
     return np.where(_shows_hands(takes) & asked.any(axis=1), missed, 0.0)
 
@@ -65,7 +65,7 @@ def act_missed(subject: Subject, at: NDArray[np.int64], seen: Bools) -> Array:
     if subject.kind != "person":
         return np.zeros(len(seen))
     works, body = at_work(subject, at), subject.landmarks["pocket"][at]
-    hands = np.stack([subject.landmarks[name][at] - body for name in ("hand_l", "hand_r")], axis=1)
+    hands = marks_at(subject, _HANDS, at) - body[:, None]
     steps = length(np.diff(hands, axis=0)) * (works[1:] | works[:-1])
     steps = steps.max(axis=1, initial=0.0)
     if steps.sum() < _AN_ACT:
@@ -92,7 +92,7 @@ def gesture_lost(
     metres = depth[..., None] * np.array(takes.track.sensor) / takes.track.focal[:, at, None]
     waist, chin = picture.of("waist") * metres, picture.of("chin") * metres
     clear = np.zeros(depth.shape)
-    for side, name in enumerate(("hand_l", "hand_r")):
+    for side, name in enumerate(_HANDS):
         beside = _off(picture.of(name) * metres, waist, chin) / subject.height
         plain = clamped((beside - _WITHIN) / (_PLAIN - _WITHIN), 0.0, 1.0)
         clear = np.maximum(clear, np.where(works[:, side] & shown[..., side], plain, 0.0))
@@ -101,11 +101,18 @@ def gesture_lost(
 
 
 def at_work(subject: Subject, at: NDArray[np.int64]) -> Bools:
-    """Whether the left hand and the right one are higher than hands that hang, bool [F, 2]."""
+    """Whether the left hand and the right one are higher than hands that hang, bool [F, 2]; not to be
+    written to."""
+    return _at_work(subject, tuple(at.tolist()))
+
+
+@lru_cache(maxsize=64)
+def _at_work(subject: Subject, frames: tuple[int, ...]) -> Bools:
+    at = np.array(frames)
     collar = subject.landmarks["collar"][at]
     trunk = subject.landmarks["waist"][at] - collar
     down = trunk / np.maximum(length(trunk), 1e-6)[..., None]
-    hands = np.stack([subject.landmarks[name][at] - collar for name in ("hand_l", "hand_r")], axis=1)
+    hands = marks_at(subject, _HANDS, at) - collar[:, None]
     along: Array = dot(hands, down[:, None])
     return np.asarray(along < _HANGS * subject.height)
 
@@ -139,7 +146,7 @@ def _face_hidden(subject: Subject, at: NDArray[np.int64], camera: Array) -> Bool
     """Which of eyes and nose are hidden from cameras [P, F, 3], [P, F, 2]."""
     assert subject.arms is not None
     face = subject.face[at]
-    points = np.stack([subject.landmarks[name][at] for name in ("eyes", "nose")], axis=1)
+    points = marks_at(subject, ("eyes", "nose"), at)
     behind = _behind_arms(camera, points, subject.arms[at], subject.height)
     chest = subject.landmarks["waist"][at], subject.landmarks["pocket"][at]
     behind |= _behind_chest(camera, points, face, *chest, subject.height)

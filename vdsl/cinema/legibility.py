@@ -15,7 +15,7 @@ from .covering import Crowd, lapped_heads
 from .framing import Array
 from .looking import Sight
 from .sizes import Size
-from .subject import Subject
+from .subject import Subject, marks_at
 from .takes import Bools, Takes, remembered, turned, within
 from .track import project
 from .vectors import length
@@ -23,6 +23,7 @@ from .vectors import length
 _HEAD = ("crown", "eyes", "chin")
 _HANDS = ("hand_l", "hand_r")
 _MARKS = (*_HEAD, "pocket", *_HANDS)  # what is looked for of everybody
+_OF_HEAD = np.isin(_MARKS, _HEAD)
 #: Share of the frame's height from which on a head is large enough to be read; and, of sizes that show a
 #: whole body or a place, metres that come to as much: a third more than a head, so that nearer is better.
 _LARGE, _TALL = 0.15, 0.32
@@ -106,9 +107,9 @@ def _marks(
 ) -> Bools:
     """Which of the marks of people are in the frame, and seen, [P, F, K, marks]. first: how many of the
     people others may hide of whom lines of sight know"""
-    points = np.stack([one.landmarks[name][at] for one in people for name in _MARKS], axis=1)
+    points = np.concatenate([marks_at(one, _MARKS, at) for one in people], axis=1)
     xy, depth = project(points[None], camera, axes, takes.track.focal[:, at], takes.track.sensor)
-    inner = np.tile(np.isin(_MARKS, _HEAD), len(people))
+    inner = np.tile(_OF_HEAD, len(people))
     there = np.where(inner, within(xy, depth, _BORDER), within(xy, depth, 0.0))
     by_person = (len(at), len(people), len(_MARKS))
     seen = looks.shown(tuple(one.name for one in people), points.reshape(*by_person, 3), first)
@@ -120,7 +121,7 @@ def _in_the_picture(
 ) -> Bools:
     """Of whom a part from the crown to the pocket is in the frame and behind no thing, [P, F, K]."""
     marks = (*_HEAD, "pocket")
-    points = np.stack([one.landmarks[name][at] for one in people for name in marks], axis=1)
+    points = np.concatenate([marks_at(one, marks, at) for one in people], axis=1)
     xy, depth = project(points[None], camera, axes, takes.track.focal[:, at], takes.track.sensor)
     there = within(xy, depth, 0.0) & looks.clear(points, people=False)
     return np.asarray(there.reshape(*there.shape[:2], len(people), len(marks)).any(axis=-1))

@@ -26,7 +26,7 @@ from .legibility import legibility
 from .looking import Sight, sight_of
 from .score import geometry_score as geometry_score
 from .sight import backdrop_gaps, hidden_walls
-from .subject import SIGHT, Subject
+from .subject import SIGHT, Subject, marks_at
 from .takes import Bools, Picture, Takes, key_sample, mean_of, remembered, samples, turned, visibility, within
 from .together import everybody_measured, everybody_seen
 from .track import CameraTrack, camera_axes, project
@@ -184,7 +184,7 @@ def measure(
     camera, rotation = track.position[:, at], track.rotation[:, at]
     axes = camera_axes(rotation)
     names = list(subject.landmarks)
-    points = np.stack([subject.landmarks[n][at] for n in names], axis=1)  # [F, K, 3]
+    points = marks_at(subject, names, at)  # [F, K, 3]
     xy, depth = project(points[None], camera, axes, track.focal[:, at], track.sensor)
     picture = Picture(names, xy, depth)
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -287,3 +287,16 @@ def anchor(subject: Subject, upper: str, lower: str, fps: float) -> NDArray[np.f
     sway = (subject.landmarks["eyes"] + subject.landmarks["waist"]) / 2
     path = np.column_stack([sway[:, :2], middle[:, 2]])
     return np.asarray(gaussian_filter1d(path, sigma=max(0.3 * fps, 0.5), axis=0, mode="nearest"))
+
+
+def marks_at(one: Subject, names: Sequence[str], at: NDArray[np.int64]) -> NDArray[np.float64]:
+    """Where some landmarks are in the frames ``at``, [F, K, 3]; not to be written to."""
+    return _marks_at(one, tuple(names), tuple(at.tolist()))
+
+
+@lru_cache(maxsize=512)  # asked for again for every few cameras
+def _marks_at(one: Subject, names: tuple[str, ...], frames: tuple[int, ...]) -> NDArray[np.float64]:
+    at = np.array(frames)
+    found = np.stack([one.landmarks[name][at] for name in names], axis=1)
+    found.flags.writeable = False
+    return found

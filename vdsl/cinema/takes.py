@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from . import space
 from .framing import Array
 from .sizes import Size
-from .subject import Subject
+from .subject import Subject, marks_at
 from .track import CameraTrack, project
 from .vectors import dot, length
 
@@ -111,7 +111,7 @@ class Picture:
 def pictured(takes: Takes, one: Subject, at: NDArray[np.int64], camera: Array, axes: Array) -> Picture:
     """Where somebody's landmarks are in the pictures of the frames ``at``."""
     names = list(one.landmarks)
-    points = np.stack([one.landmarks[name][at] for name in names], axis=1)
+    points = marks_at(one, names, at)
     return Picture(names, *project(points[None], camera, axes, takes.track.focal[:, at], takes.track.sensor))
 
 

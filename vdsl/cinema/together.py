@@ -17,7 +17,7 @@ from .framing import Array
 from .gestures import act_missed, face_covered, gesture_lost, hands_missed
 from .looking import Sight
 from .sight import clear_of_people
-from .subject import SIGHT, Subject
+from .subject import SIGHT, Subject, marks_at
 from .takes import Bools, Takes, mean_of, pictured, remembered, turned, visibility, within
 from .track import project
 from .vectors import dot, length
@@ -97,7 +97,7 @@ def everybody_measured(
     found: list[dict[str, Array]] = []
     for one in subject.members:
         picture = pictured(takes, one, at, camera, axes)
-        points = np.stack([one.landmarks[n][at] for n in SIGHT], axis=1)
+        points = marks_at(one, SIGHT, at)
         sight = [picture.names.index(n) for n in SIGHT]
         inside = within(picture.xy[:, :, sight], picture.depth[:, :, sight], 0.0)
         seen = _seen_among(subject.members, one, points, at, camera, looks)

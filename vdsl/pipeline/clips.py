@@ -88,11 +88,14 @@ def clips_of(scene: Scene, rng: np.random.Generator) -> list[Clip]:
         made = _made(scene, shot, grid, rng)
         about = about_of(shot, grid, scene.filming, scene.staged)
         subjects = [subject_of(shot, story, scene.filming) for story in grid.story]
-        for clip in made:
-            story = grid.story[clip.camera.story]
-            at = segment_frames(story.frames)
-            told = frame_hints_of(clip.camera, subjects[clip.camera.story], at)
-            out.append(replace(clip, frames=told, meant=meant(clip.camera, at), about=about, shot=shot))
+        told: dict[int, dict[str, list[float]]] = {}
+        for k, story in enumerate(grid.story):
+            rows = [i for i, clip in enumerate(made) if clip.camera.story == k]
+            cameras = [made[i].camera for i in rows]
+            told |= zip(rows, frame_hints_of(cameras, subjects[k], segment_frames(story.frames)), strict=True)
+        for i, clip in enumerate(made):
+            at = segment_frames(grid.story[clip.camera.story].frames)
+            out.append(replace(clip, frames=told[i], meant=meant(clip.camera, at), about=about, shot=shot))
     return out
 
 

@@ -13,9 +13,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..cinema.flaws import flaws_by_measure
-from ..cinema.subject import Subject
+from ..cinema.subject import Subject, marks_at
 from ..cinema.takes import samples
 from ..cinema.track import CameraTrack, project
+from ..cinema.vectors import dot
 from ..propose.types import CameraProposal
 from .designer import appeal, qualities
 
@@ -78,35 +79,48 @@ def _motion(track: CameraTrack) -> dict[str, float]:
     }
 
 
-def frame_hints_of(camera: CameraProposal, subject: Subject, at: NDArray[np.int64]) -> dict[str, list[float]]:
-    """What the geometry knows of some frames ``at`` of a take, by name a number for each; signs as above.
+def frame_hints_of(
+    cameras: Sequence[CameraProposal], subject: Subject, at: NDArray[np.int64]
+) -> list[dict[str, list[float]]]:
+    """What the geometry knows of some frames ``at`` of takes of one performance, of each by name a number for
+    each frame; signs as above.
 
     Where the subject's points lie (half frames from the middle, to the right and to the top; NaN behind the
     camera), how large it is, how it faces the camera, and how the camera looks.
     """
-    track = camera.track
-    position, rotation, focal = track.position[at], track.rotation[at], track.focal[at]
-    axes = track.axes[at]
-    points = np.stack([subject.landmarks[name][at] for name in _POINTS], axis=1)
-    xy, depth = project(points, position, axes, focal, track.sensor)
+    tracks = [camera.track for camera in cameras]
+    if not tracks:
+        return []
+    position, rotation, focal, axes = (
+        np.stack([of[at] for of in values])
+        for values in (
+            [track.position for track in tracks],
+            [track.rotation for track in tracks],
+            [track.focal for track in tracks],
+            [track.axes for track in tracks],
+        )
+    )
+    points = marks_at(subject, _POINTS, at)
+    xy, depth = project(points, position, axes, focal, tracks[0].sensor)
     place = (2.0 * xy - 1.0) * (1.0, -1.0)
     place = np.where((depth > 0.05)[..., None], np.clip(place, -_FAR, _FAR), np.nan)
     found: dict[str, NDArray[np.float64]] = {}
     for k, name in enumerate(_POINTS):
-        found[f"right_{name}"], found[name] = place[:, k, 0], place[:, k, 1]
+        found[f"right_{name}"], found[name] = place[..., k, 0], place[..., k, 1]
     away = np.maximum(np.linalg.norm(subject.landmarks["waist"][at] - position, axis=-1), 0.2)
     face = subject.face[at]
     found |= {
         "size": np.log(focal / away),
         "distance": np.log(away),
         "lens": np.log(focal),
-        "right_face": np.einsum("ti,ti->t", face, axes[:, 0]),
-        "face": -np.einsum("ti,ti->t", face, axes[:, 2]),
-        "pitch": rotation[:, 1],
-        "right_roll": rotation[:, 0],
-        "over": np.clip(position[:, 2] - subject.landmarks["eyes"][at, 2], -_FAR, _FAR),
+        "right_face": dot(face, axes[..., 0, :]),
+        "face": -dot(face, axes[..., 2, :]),
+        "pitch": rotation[..., 1],
+        "right_roll": rotation[..., 0],
+        "over": np.clip(position[..., 2] - subject.landmarks["eyes"][at, 2], -_FAR, _FAR),
     }
-    return {k: [round(float(x), 4) for x in v] for k, v in sorted(found.items())}
+    told = [(name, values.tolist()) for name, values in sorted(found.items())]
+    return [{name: [round(x, 4) for x in values[k]] for name, values in told} for k in range(len(cameras))]
 
 
 def meant(camera: CameraProposal, at: NDArray[np.int64]) -> list[int]:

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -315,7 +316,7 @@ def _foreground(
     in the way half way to the subject and, for less, on the last of the way to it."""
     some = np.arange(len(at))
     if not looks.by_pictures:
-        some = np.unique((np.arange(_LOOKED_AT) * ((len(at) - 1) / (_LOOKED_AT - 1))).round().astype(int))
+        some = _some_of(len(at))
     track = takes.track
     far = np.maximum(picture.depth[:, some, picture.names.index("pocket")], 0.2)
     eye, ax = camera[:, some, None], axes[:, some, None]
@@ -335,6 +336,12 @@ def _foreground(
     blocked = np.where(clear, 0.0, np.array([counts for _, counts in _NEAR])[:, None]).max(axis=2)
     share = blocked.mean(axis=2)
     return np.asarray(np.maximum(share.mean(axis=1), ENDS_BEHIND * share[:, -1]))
+
+
+@lru_cache(maxsize=16)
+def _some_of(frames: int) -> NDArray[np.int64]:
+    """Those of so many sampled frames that are looked at, evenly spaced; not to be written to."""
+    return np.unique((np.arange(_LOOKED_AT) * ((frames - 1) / (_LOOKED_AT - 1))).round().astype(int))
 
 
 def _above(floor: float, eye: Array, points: Array) -> Array:

@@ -13,6 +13,7 @@ from .vectors import clamped, dot, length
 
 Array = NDArray[np.float64]
 
+_AT_ONCE = 1 << 14  # numbers of cameras past pillars at a time: more no longer lie in a core's own cache
 REACH = 1.0  # metres up to which clearance is measured
 
 
@@ -99,15 +100,20 @@ def clearance(solids: Solids, near: Nearby, hidden: NDArray[np.bool_]) -> Cleara
 
 
 def to_people(camera: Array, bodies: list[tuple[Array, Array, float]]) -> Array:
-    """Least distance [P] from cameras [P, F, 3] to pillars (foot [F, 3], crown [F, 3], radius)."""
+    """Least distance [P] from cameras [P, F, 3] to pillars (foot [F, 3], crown [F, 3], radius), or to such as
+    every take has its own of, [P, F, 3]."""
     best = np.full(len(camera), REACH)
-    for foot, crown, radius in bodies:
-        axis = crown - foot
-        square = np.maximum(dot(axis, axis), 1e-9)
-        start = camera - foot
-        t = clamped(dot(start, axis) / square, 0.0, 1.0)
+    at_once = max(_AT_ONCE // max(camera.size, 1), 1)
+    for begin in range(0, len(bodies), at_once):
+        some = bodies[begin : begin + at_once]
+        foot, crown = (np.array([body[k] for body in some]) for k in (0, 1))
+        if foot.ndim == 3:
+            foot, crown = foot[:, None], crown[:, None]  # [B, 1, F, 3]
+        axis, start = crown - foot, camera - foot
+        t = clamped(dot(start, axis) / np.maximum(dot(axis, axis), 1e-9), 0.0, 1.0)
+        radius = np.array([body[2] for body in some])[:, None, None]
         away = length(start - t[..., None] * axis) - radius
-        np.minimum(best, away.min(axis=1), out=best)
+        np.minimum(best, away.min(axis=(0, 2)), out=best)
     return best
 
 

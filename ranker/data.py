@@ -139,7 +139,8 @@ class ShardWriter:
         guides: Guides | None = None,
     ) -> None:
         """Append a clip: uint8 [T, H, W, 3], None for a bare one; guides: its own, of one shot, all clips of
-        a shard's or none's; see :class:`Label` for the rest. Frames nobody can change are not copied."""
+        a shard's or none's; see :class:`Label` for the rest. Frames flagged as not to be
+        written to are not copied, and have to stay as they are until they are on disk."""
         if frames is None and guides is None:
             raise ValueError("a clip without frames needs guides")
         if frames is not None and (frames.shape != self.shape or frames.dtype != np.uint8):

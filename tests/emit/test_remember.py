@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from vdsl.cinema.track import CameraTrack
 from vdsl.emit.remember import remembering
 
 
@@ -83,3 +84,22 @@ def test_errors_are_not_remembered() -> None:
         with pytest.raises(ValueError, match="7"):
             call(7)
     assert calls == [7, 7]
+
+
+def test_what_was_asked_of_a_track_makes_it_no_other() -> None:
+    made: list[CameraTrack] = []
+
+    @remembering(3)
+    def called(track: CameraTrack) -> float:
+        made.append(track)
+        return float(track.axes.sum())
+
+    def track() -> CameraTrack:
+        return CameraTrack(
+            np.ones((9, 3)), np.zeros((9, 3)), np.full(9, 35.0), np.zeros((9, 3)), (36.0, 24.0)
+        )
+
+    looked_at = track()
+    assert looked_at.axes.shape == (9, 3, 3)
+    assert called(looked_at) == called(track()) == called(looked_at)
+    assert len(made) == 1

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import os
 import pickle
 from pathlib import Path
@@ -68,12 +69,18 @@ def test_what_has_mistakes_is_reported_every_time(tmp_path: Path) -> None:
     assert not (tmp_path / "wrong").exists()
 
 
+def sealed(content: bytes) -> bytes:
+    return hashlib.sha256(content).digest() + content
+
+
 @pytest.mark.parametrize("junk", [b"", b"junk", pickle.dumps(None), pickle.dumps([1, 2])])
 def test_a_damaged_file_is_passed_over(tmp_path: Path, junk: bytes) -> None:
     parsed, _ = stool(tmp_path)
     (file,) = tmp_path.iterdir()
     whole = file.read_bytes()
-    for damaged in (junk, whole[: len(whole) // 2]):
+    changed = whole.replace(b"oak", b"ash")
+    assert changed != whole
+    for damaged in (junk, sealed(junk), whole[: len(whole) // 2], changed):
         file.write_bytes(damaged)
         assert stool(tmp_path)[0] == parsed
         assert file.read_bytes() == whole
@@ -88,7 +95,7 @@ def test_a_file_runs_nothing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) ->
     monkeypatch.chdir(tmp_path)
     parsed, _ = stool(tmp_path / "kept")
     (file,) = (tmp_path / "kept").iterdir()
-    file.write_bytes(pickle.dumps(Harm()))
+    file.write_bytes(sealed(pickle.dumps(Harm())))
     assert stool(tmp_path / "kept")[0] == parsed
     assert not (tmp_path / "harm").exists()
 

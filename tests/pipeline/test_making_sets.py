@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from functools import partial
@@ -14,7 +15,7 @@ from ranker.data import Dataset
 from ranker.errors import RankerError
 from ranker.guides import MARKS
 from vdsl.pipeline.casting import Troupe
-from vdsl.pipeline.dataset import _Filmed, _leave, generate
+from vdsl.pipeline.dataset import _Filmed, _leave, _taken, generate
 
 
 def test_a_training_set_is_nearly_half_good_and_goes_on_where_it_stopped(
@@ -158,3 +159,43 @@ def test_a_process_that_is_lost_is_told_and_loses_nothing(
         generate(tmp_path, 10, seed=3, device="cpu", size=48, processes=2)
     assert [label.about["story"] for label in Dataset(tmp_path).labels] == [0]
     assert not list(tmp_path.glob(".filmed-*"))
+
+
+def test_what_a_process_leaves_is_taken_as_it_was(tmp_path: Path) -> None:
+    rng = np.random.default_rng(0)
+    clips = rng.integers(0, 255, (5, 8, 16, 16, 3), dtype=np.uint8)
+    for scenes in (
+        [_Filmed(clips[:2], [("a",)] * 3), _Filmed([], [("b",)]), _Filmed(clips[2:], [("c",)] * 3)],
+        [_Filmed([], [("b",)])],
+        [],
+    ):
+        _leave(tmp_path / "7", scenes)
+        found = _taken(tmp_path / "7", 16)
+        assert not list(tmp_path.iterdir())
+        assert [scene.labels for scene in found] == [scene.labels for scene in scenes]
+        for one, other in zip(found, scenes, strict=True):
+            assert len(one.frames) == len(other.frames)
+            for frames, were in zip(one.frames, other.frames, strict=True):
+                np.testing.assert_array_equal(frames, were)
+                assert not frames.flags.writeable
+
+
+def test_what_goes_wrong_with_writing_ends_the_filming(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    ended: list[bool] = []
+
+    def stories(*_: object) -> Iterator[list[_Filmed]]:
+        try:
+            while True:
+                yield [_Filmed([np.zeros((8, 32, 32, 3), np.uint8)], [("no", "label")])]
+        finally:
+            ended.append(True)
+
+    monkeypatch.setattr("vdsl.pipeline.dataset._stories", stories)
+    try:
+        generate(tmp_path, 4, device="cpu", size=32)
+    except TypeError:
+        assert ended == [True]
+    else:
+        pytest.fail("a label like that cannot be written")

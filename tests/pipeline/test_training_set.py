@@ -358,3 +358,8 @@ def test_frame_hints_say_where_the_subject_is_and_are_mirrored_with_it() -> None
     behind = replace(track, rotation=track.rotation + np.array((0, 0, np.pi)))
     (unseen,) = frame_hints_of([replace(camera, track=behind)], subject(0.4, 1.0), at)
     assert np.isnan(unseen["right_eyes"]).all()
+    both = frame_hints_of([replace(camera, track=t) for t in (track, behind)], subject(0.4, 1.0), at)
+    for one, alone in zip(both, (here, unseen), strict=True):
+        assert one.keys() == alone.keys()
+        for name, values in alone.items():
+            np.testing.assert_array_equal(one[name], values, err_msg=name)

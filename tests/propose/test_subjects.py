@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 from filmset import shot, standing, story, world
 
 from runtime.body.proportions import make_skeleton
 from runtime.body.spec import BodySpec
+from vdsl.cinema import sight, space
 from vdsl.cinema.sight import clear_of_people
+from vdsl.cinema.space import to_people
 from vdsl.propose.subjects import Filming, pillars_of
 
 TALL = 1.7
@@ -46,3 +49,27 @@ def test_who_stands_sideways_hides_less() -> None:
     assert seen_past("none", chest, 0.25, yaw=np.pi / 2)
     assert seen_past("none", chest, 0.19, yaw=np.pi / 2)
     assert seen_past("none", chest, 0.34)
+
+
+@pytest.mark.parametrize("takes", [0, 1, 7])
+def test_all_pillars_at_once_are_as_one_after_the_other(monkeypatch: pytest.MonkeyPatch, takes: int) -> None:
+    rng = np.random.default_rng(takes)
+    camera, points = rng.normal(0, 2, (takes, 4, 3)), rng.normal(0, 2, (4, 5, 3))
+    feet = rng.normal(0, 1, (9, 4, 3)) * (1, 1, 0)
+    bodies = [(foot, foot + np.array((0.0, 0.0, 1.7)), 0.1 * k) for k, foot in enumerate(feet, 1)]
+    seen = np.ones((takes, 4, 5), bool)
+    near = np.full(takes, space.REACH)
+    for body in bodies:
+        seen &= clear_of_people(camera, points, [body])
+        near = np.minimum(near, to_people(camera, [body]))
+    assert takes < 7 or (0 < seen.sum() < seen.size and near.min() < near.max())
+    for at_once in (1, 1 << 7, 1 << 20):
+        monkeypatch.setattr(sight, "_AT_ONCE", at_once)
+        monkeypatch.setattr(space, "_AT_ONCE", at_once)
+        np.testing.assert_array_equal(clear_of_people(camera, points, bodies), seen)
+        np.testing.assert_array_equal(to_people(camera, bodies), near)
+    assert clear_of_people(camera, points, []).all()
+    own = [
+        (*(np.tile(end, (takes, 1, 1)) for end in (foot, crown)), radius) for foot, crown, radius in bodies
+    ]
+    np.testing.assert_array_equal(to_people(camera, own), near)

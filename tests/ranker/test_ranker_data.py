@@ -108,3 +108,20 @@ def test_hints_are_scaled_and_unknown_ones_are_nan(tmp_path: Path) -> None:
     assert (known[:, 0] > 0).all()  # a mirrored one has to be the negative, so the middle stays 0
     write_clips(tmp_path / "none", 4)
     assert Dataset(tmp_path / "none").hints[1].shape == (4, 0)
+
+
+def test_frames_that_may_be_written_to_are_copied_and_others_not(tmp_path: Path) -> None:
+    rng = np.random.default_rng(1)
+    frames = clip(rng, True, 0, 0, 1)
+    for flagged in (False, True):
+        given = frames.copy()
+        given.flags.writeable = not flagged
+        with ShardWriter(tmp_path / f"{flagged}", WORDS, (SIZE, SIZE), FRAMES) as writer:
+            writer.add(given, True, None, None, None, "g", 0.0)
+            assert np.shares_memory(writer._frames[0], given) == flagged
+            if not flagged:
+                given[:] = 0
+        np.testing.assert_array_equal(Dataset(tmp_path / f"{flagged}").clip(0, range(FRAMES), SIZE), frames)
+    one, other = (tmp_path / f"{flagged}" / "shard-00000.npy" for flagged in (False, True))
+    assert one.read_bytes() == other.read_bytes()
+    np.testing.assert_array_equal(np.load(one), frames[None])

@@ -190,7 +190,8 @@ def _behind_chest(
 
 
 def _apart(camera: Array, ray: Array, begin: Array, limb: Array) -> Array:
-    """Least distance [P, F] between lines of sight [P, F, 3] from cameras and a limb from where it begins."""
+    """Least distance [P, F, ...] between lines of sight [P, F, ..., 3] from cameras and limbs from where they
+    begin."""
     start = camera - begin
     a, e, f = dot(ray, ray), np.maximum(dot(limb, limb), 1e-9), dot(limb, start)
     b, c = dot(ray, limb), dot(ray, start)

@@ -8,8 +8,9 @@ down in the picture's own frame). Arrays may carry leading batch axes: [..., T, 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -32,6 +33,10 @@ class CameraTrack:
     sensor: tuple[float, float]
     focus: NDArray[np.float64] | None = None
     aperture: NDArray[np.float64] | float = 0.0
+
+    def __getstate__(self) -> dict[str, Any]:
+        """The fields alone: tracks that are the same are written the same, whatever was asked of them."""
+        return {field.name: getattr(self, field.name) for field in fields(self)}
 
     @cached_property
     def axes(self) -> NDArray[np.float64]:

@@ -2,8 +2,8 @@
 
 For the library's, of which a script names a few dozen and a training set asks for all. Assumes that the same
 text is parsed the same way by the same code. Guarantees that a file that is damaged, foreign or of other code
-is passed over, that reading one makes nothing but nodes of the syntax tree, that two who write at once do not
-harm each other, and that a disk that refuses costs time alone.
+is passed over, that reading one calls nothing but the classes of the syntax tree, that two who write at once
+do not harm each other, and that a disk that refuses costs time alone.
 """
 
 from __future__ import annotations
@@ -16,6 +16,7 @@ import pickle
 import sys
 import tempfile
 from collections.abc import Callable
+from contextlib import suppress
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
@@ -33,6 +34,7 @@ from .source import Source
 MOST = 4096
 #: What parses, besides the grammar.
 _CODE = ("ast.py", "build.py", "layout.py", "parse.py", "source.py")
+_DIGEST = hashlib.sha256().digest_size
 _pruned: set[Path] = set()
 
 
@@ -45,7 +47,10 @@ def parsed(
     folder: to keep it in; None for the user's own
     """
     report = Report()
-    path = (folder or grammar.cache_folder() / "definitions") / f"{_key(text, kind, name, start, end)}.bin"
+    if (code := _code()) is None:
+        return parse_definition(text, kind, name, report, start, end), report
+    key = hashlib.sha256(f"{code}\0{kind}\0{name}\0{start}\0{text.text[start:end]}".encode())
+    path = (folder or grammar.cache_folder() / "definitions") / f"{key.hexdigest()[:32]}.bin"
     found = _read(path, text)
     if found is None:
         found = parse_definition(text, kind, name, report, start, end)
@@ -54,17 +59,15 @@ def parsed(
     return found, report
 
 
-def _key(text: Source, kind: str, name: str, start: int, end: int) -> str:
-    told = f"{_code()}\0{kind}\0{name}\0{start}\0{text.text[start:end]}"
-    return hashlib.sha256(told.encode("utf-8", "surrogatepass")).hexdigest()[:32]
-
-
 @lru_cache(maxsize=1)
-def _code() -> str:
-    """A digest of what parses."""
+def _code() -> str | None:
+    """A digest of what parses; None where that is not in files."""
     told = hashlib.sha256(f"{sys.version} {lark.__version__}".encode())
-    for file in (grammar.GRAMMAR_FILE, *(Path(__file__).with_name(name) for name in _CODE)):
-        told.update(file.read_bytes() if file.is_file() else b"")
+    own = (Path(__file__).with_name(name) for name in _CODE)
+    for file in (grammar.GRAMMAR_FILE, Path(grammar.__file__), *own):
+        if not file.is_file():
+            return None
+        told.update(file.read_bytes())
     return told.hexdigest()
 
 
@@ -95,7 +98,11 @@ class _Reader(pickle.Unpickler):
 
 def _read(path: Path, text: Source) -> ast.Definition | None:
     try:
-        found = _Reader(io.BytesIO(path.read_bytes()), text).load()
+        told = path.read_bytes()
+        packed = told[_DIGEST:]
+        if hashlib.sha256(packed).digest() != told[:_DIGEST]:
+            return None
+        found = _Reader(io.BytesIO(packed), text).load()
     except Exception:  # whatever is wrong with a file, the text itself is at hand
         return None
     return found if isinstance(found, ast.Definition) else None
@@ -114,17 +121,20 @@ def _write(path: Path, definition: ast.Definition, text: Source) -> None:
         return
     try:
         with os.fdopen(handle, "wb") as file:
+            file.write(hashlib.sha256(packed.getbuffer()).digest())
             file.write(packed.getbuffer())
         os.replace(name, path)
     except OSError:
-        Path(name).unlink(missing_ok=True)
+        with suppress(OSError):
+            Path(name).unlink(missing_ok=True)
 
 
 def _prune(folder: Path) -> None:
-    """Once in a process, remove what is too much."""
+    """Once in a process, remove what is too much, finished or not."""
     if folder in _pruned:
         return
     _pruned.add(folder)
-    kept = sorted(folder.glob("*.bin"), key=lambda p: p.stat().st_atime)
-    for old in kept[: max(len(kept) - MOST, 0)]:
-        old.unlink(missing_ok=True)
+    with suppress(OSError):  # another may be at it too
+        kept = sorted(folder.glob("*.*"), key=lambda p: p.stat().st_atime)
+        for old in kept[: max(len(kept) - MOST, 0)]:
+            old.unlink(missing_ok=True)

@@ -50,12 +50,15 @@ class Warm:
     states: dict[str, SceneState] = field(default_factory=dict)
 
 
-def stage_acts(checked: Checked, hand: Stagehand | None = None, played: Played = _nobody) -> list[Act]:
+def stage_acts(
+    checked: Checked, hand: Stagehand | None = None, played: Played = _nobody, begun: bool = False
+) -> list[Act]:
     """Every line in its scene with its opening state. Raises ScriptError for what cannot be played.
 
     hand: one that has built sets and bodies before; played: told of every line, with the seconds it took
+    begun: whether acts keep their first performance
     """
-    acts = Acts(checked, Cache(kept=False), "", hand, played=played, begun=True)
+    acts = Acts(checked, Cache(kept=False), "", hand, played=played, begun=begun)
     acts.play()
     return [acts.act(line) for line in checked.storyboard.lines]
 

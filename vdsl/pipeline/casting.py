@@ -87,7 +87,7 @@ class Troupe:
         try:
             settings = Settings(seed=self.seed + number)
             checked = check_source(Source(f"<story {number}>", text), overrides=settings)
-            acts = stage_acts(checked, self.hand)
+            acts = stage_acts(checked, self.hand, begun=True)
         except ScriptError:
             return
         cast = tuple(c.cast for c in checked.storyboard.characters)

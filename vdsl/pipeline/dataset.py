@@ -19,7 +19,7 @@ from collections import deque
 from collections.abc import Callable, Generator, Sequence
 from concurrent.futures import Future, ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
-from contextlib import suppress
+from contextlib import closing, suppress
 from dataclasses import dataclass
 from itertools import count, islice
 from multiprocessing.queues import Queue
@@ -122,20 +122,19 @@ def generate(
             return begun
         making = _Making(seed, device, size, pictures, every)
         stories = _stories(first, making, processes or min(_cores(), _PROCESSES), folder)
-        for story in stories:
-            for scene in story:
-                for k, label in enumerate(scene.labels):
-                    writer.add(scene.frames[k] if k < len(scene.frames) else None, *label)
-            now = perf_counter()
-            watcher.advance("clips", sum(len(scene.frames) for scene in story), now - last)
-            last = now
-            enough = len(writer) + writer.pending >= clips
-            if enough:
-                stories.close()  # what is still being filmed is not wanted, and would slow down the writing
-            if writer.pending >= _SHARD or enough:
-                writer.flush()
-            if enough:
-                break
+        with closing(stories):  # what is still being filmed in the end is not wanted
+            for story in stories:
+                for scene in story:
+                    for k, label in enumerate(scene.labels):
+                        writer.add(scene.frames[k] if k < len(scene.frames) else None, *label)
+                now = perf_counter()
+                watcher.advance("clips", sum(len(scene.frames) for scene in story), now - last)
+                last = now
+                enough = len(writer) + writer.pending >= clips
+                if writer.pending >= _SHARD or enough:
+                    writer.flush()
+                if enough:
+                    break
         return len(writer)
 
 
@@ -161,7 +160,7 @@ def _stories(
     for place in range(processes):
         places.put(place)
     waiting: deque[Future[Path]] = deque()
-    # what is mapped cannot be removed everywhere: then it stays until it is no more
+    # what is mapped cannot be removed on every disk
     between = tempfile.TemporaryDirectory(prefix=".filmed-", dir=folder, ignore_cleanup_errors=True)
     about = (places, making, Path(between.name))
     pool = ProcessPoolExecutor(processes, context, _settle, about)
@@ -222,11 +221,15 @@ def _taken(path: Path, size: int) -> list[_Filmed]:
         told: list[tuple[int, list[tuple[Any, ...]]]] = pickle.load(file)
     count, frames = sum(n for n, _ in told), path.with_suffix(".frames")
     shape = (count, SEGMENTS, size, size, 3)
-    clips = iter(np.memmap(frames, np.uint8, "r", shape=shape) if count else ())
-    found = [_Filmed(list(islice(clips, n)), labels) for n, labels in told]
+    if os.name == "nt" or not count:  # what is mapped cannot be removed there, nothing cannot be mapped
+        clips = np.fromfile(frames, np.uint8).reshape(shape)
+        clips.flags.writeable = False
+    else:
+        clips = np.memmap(frames, np.uint8, "r", shape=shape)
+    each = iter(clips)
+    found = [_Filmed(list(islice(each, n)), labels) for n, labels in told]
     path.unlink()
-    with suppress(PermissionError):
-        frames.unlink()
+    frames.unlink()
     return found
 
 

@@ -104,7 +104,9 @@ def tell(
     """Perform a line in up to ``most`` ways.
 
     shot: whose duration, speed and speech count (the first of the line's if None), and whose camera says from
-        where on the line is shown; begun: what :func:`begin` made of the same, where that is at hand
+        where on the line is shown
+    begun: what :func:`begin` made of the same in the same state, where that is at hand; what it reported is
+        not reported again
     What cannot be done is reported and left out: the person idles instead.
     """
     begun = begun if begun is not None else begin(state, line, filming, report, shot)

@@ -294,7 +294,7 @@ def _asked(clip: Clip) -> tuple[str, str, str]:
 
 
 def test_what_does_not_get_worse_is_no_negative(scenes: list[Scene], monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("vdsl.pipeline.clips.perturbed", lambda track, strength, rng: track)
+    monkeypatch.setattr("vdsl.pipeline.clips.perturbation", lambda strength, rng: lambda track: track)
     monkeypatch.setattr("vdsl.pipeline.clips.mistyped", lambda track, rng: track)
     monkeypatch.setattr("vdsl.pipeline.clips._PASSED_OVER", 0.0)
     assert [clip for scene in scenes for clip in drawn_of(scene, 0)] == []

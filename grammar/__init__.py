@@ -11,8 +11,10 @@ import hashlib
 import os
 import sys
 import tempfile
+from collections.abc import Callable
 from functools import lru_cache
 from pathlib import Path
+from typing import BinaryIO
 
 import lark
 
@@ -57,7 +59,7 @@ def parser() -> lark.Lark:
             return lark.Lark.load(file)
     except Exception:  # whatever is wrong with a cache, the grammar itself is at hand
         built = build_parser()
-    _write(built, path)
+    keep(path, built.save)
     return built
 
 
@@ -79,14 +81,14 @@ def _cache_path() -> Path:
     return cache_folder() / f"grammar-{key.hexdigest()[:16]}.bin"
 
 
-def _write(built: lark.Lark, path: Path) -> None:
-    """Save atomically; a cache that cannot be written is no error."""
+def keep(path: Path, save: Callable[[BinaryIO], object]) -> None:
+    """Write a file of the cache by ``save``, in one step; a cache that cannot be written is no error."""
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         handle, name = tempfile.mkstemp(dir=path.parent)
         try:
             with os.fdopen(handle, "wb") as file:
-                built.save(file)
+                save(file)
             os.replace(name, path)
         except BaseException:
             os.unlink(name)

@@ -1,4 +1,4 @@
-"""Definitions as they were parsed, kept on disk between runs: they are read back in about a third of the time.
+"""Definitions as they were parsed, kept on disk between runs: reading them takes about a third of the time.
 
 For the library's, of which a script names a few dozen and a training set asks for all. Assumes that the same
 text is parsed the same way by the same code. Guarantees that a file that is damaged, foreign or of other code

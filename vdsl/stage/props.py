@@ -16,6 +16,7 @@ from runtime.mesh import Mesh, join
 
 from ..lang.definitions.primitives import Primitive
 from ..lang.definitions.prop import PropShape, PropSpot
+from .flush import told_apart
 from .models import FileProp, file_prop
 
 #: Boxes with no side longer than this are nothing to bump into.
@@ -71,7 +72,7 @@ def build_prop(shape: PropShape) -> BuiltProp:
         boxes = merged_boxes(bounds)
         centre = np.array([(a + b) / 2 for a, b in boxes]).reshape(-1, 3)
         half = np.array([(b - a) / 2 for a, b in boxes]).reshape(-1, 3)
-    return BuiltProp(join(meshes), centre, half, spots)
+    return BuiltProp(join(told_apart(meshes)), centre, half, spots)
 
 
 def built_file(thing: FileProp) -> BuiltProp:

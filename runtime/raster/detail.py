@@ -27,6 +27,8 @@ from .types import LOOSE, RenderScene
 #: Share of the faces kept by each coarser level, and the pixels a metre below which it is drawn.
 LEVELS = ((0.5, 300.0), (0.25, 100.0))
 FINER = 700.0  # pixels a metre from which on the finer level is drawn
+#: In pictures of so few rows, which are looked at as a whole, the same for the finer level and the coarser ones.
+SMALL, IN_SMALL = 400, (1400.0, 400.0, 250.0)
 FINEST, OWN = 0, 1  # the finer level, and the mesh as it is; coarser ones follow
 COUNT = OWN + 1 + len(LEVELS)
 SHELL = 400  # faces; shells of fewer keep them
@@ -98,8 +100,9 @@ class Levels:
         middle = np.einsum("mpij,bpj->mbi", palettes[:, :count].astype(np.float64), self.middle)
         away = np.linalg.norm(middle[moment] - view[:, None, :3], axis=-1) - REACH
         scale = np.maximum(view[:, 12], view[:, 13])[:, None] / np.maximum(away, 1e-3)
-        limits = np.array([FINER, *(limit for _, limit in LEVELS)])
-        return (scale[..., None] < limits).sum(axis=-1).astype(np.int32)
+        limits = np.array([[FINER, *(limit for _, limit in LEVELS)], IN_SMALL])
+        small = (2 * view[:, 15] <= SMALL).astype(int)
+        return (scale[..., None] < limits[small][:, None]).sum(axis=-1).astype(np.int32)
 
 
 def with_levels(scene: RenderScene) -> Levels:

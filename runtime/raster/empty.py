@@ -126,9 +126,8 @@ class EmptySets:
         source = self._passes.layer("empty_", int(empty.max()) + 1, size)
         run, views, a = self._passes.run, len(empty), loaded.arrays
         block = self._buffer("block", (views * -(-size[1] // run) * -(-size[0] // run),), np.int32)
-        bounds = self._buffer("standing", (moments.count, 4), np.int32)
+        bounds = moments.ground.bounds(moments.count)
         cells, bands = (loaded.columns, loaded.rows), views * -(-size[1] // run)
-        self._reuse.standing(moments.ground, *cells, moments.count, bounds)
         self._reuse.find(
             moment,
             empty,
@@ -141,7 +140,7 @@ class EmptySets:
             *(shadows.home, shadows.home_frame, shadows.home_size, shadows.home_changed),
             a["floor"],
             *cells,
-            moments.ground,
+            moments.ground.cells,
             moments.count,
             bounds,
             box,

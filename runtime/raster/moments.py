@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from .detail import COUNT, FINEST
 from .device import Backend, vectorised
+from .ground import Ground
 from .loaded import Loaded
 from .resting import Lists, Taken, lists_of, needed
 from .shadows import Shadows
@@ -30,22 +31,20 @@ class Moments:
     those that are in all moments as in the first one, where alone they are wanted; ball: float32
     [M + 1, C, 4], bounds of the wanted ones; taken: int32 [C], 1 for those of the last moment, things that
     rest, None without; still: what says how it looks, for whoever keeps pictures of it
-    shadows: what falls into their light; ground: [M + 1, 2, rows, columns] how closely things stand over the
-    floor, and over furniture
+    shadows: what falls into their light; ground: what stands on the floor and on furniture
     """
 
     def __init__(self, backend: Backend, buffer: Buffers, style: Style) -> None:
-        from .kernels import contact, geometry, skinning  # only now: they import taichi
+        from .kernels import geometry, skinning  # only now: they import taichi
 
         self._backend, self._buffer, self._style = backend, buffer, style
-        self._geometry, self._contact, self._skinning = geometry, contact, skinning
+        self._geometry, self._skinning = geometry, skinning
         self._blend = vectorised(skinning.skin_blended) if backend.on_host else None
-        self.count, self.shadows = 1, Shadows(backend, buffer)
+        self.count, self.shadows, self.ground = 1, Shadows(backend, buffer), Ground(backend, buffer)
         nothing = np.zeros((1, 1), np.int32)
         self.wanted, self.rests = backend.upload(nothing), backend.upload(nothing[0])
         self.taken: NDArray[np.int32] | None = None
         self.still = b""
-        self._cells = 1  # of floor and furniture, both
 
     def move(
         self,
@@ -85,9 +84,9 @@ class Moments:
         taken = self._rest(loaded, palettes, restless) if lit and self._backend.on_host else None
         self.shadows.cast(loaded, self.position, palettes, None if taken is None else taken.entries)
         if self._style.occlusion and lit:
-            self._touch(loaded, moments, moving)
+            self.ground.count(loaded, self.position, moments, moving)
         if lit and self._backend.on_host:
-            rest = [self._ground_of(moments)]
+            rest = [self.ground.of(moments)]
             rest += [] if taken is None else [taken.clusters, palettes[0, taken.entries]]
             self.still = b"".join(np.ascontiguousarray(part).tobytes() for part in rest)
 
@@ -137,45 +136,6 @@ class Moments:
         places = (first, loaded.static_vertices, moments, position, ball)
         self._geometry.bound(a["faces"], a["clusters"], wanted, *places)
 
-    def _touch(self, loaded: Loaded, moments: int, moving: NDArray[np.bool_]) -> None:
-        """What stands on the floor and on furniture: of what rests, found once."""
-        cells = 2 * loaded.rows * loaded.columns
-        counted = self._buffer("counted", (moments * cells,), np.int32)
-        runs, resting = loaded.rig.touching(moving)
-        base = self._buffer("resting", (cells,), np.int32)
-        nothing = self._buffer("nothing", (cells,), np.int32)
-        for count, some, begin, out in ((1, resting, nothing, base), (moments, runs, base, counted)):
-            if out is base and not len(some):
-                base.fill(0)
-                continue
-            self._count(loaded, some, count, begin, out, cells)
-            if out is base and self._backend.on_host:
-                self._ground_of(moments)[:] = self.ground[:cells]
-
-    def _count(
-        self, loaded: Loaded, runs: NDArray[np.int32], moments: int, begin: Any, out: Any, cells: int
-    ) -> None:
-        """What the vertices of runs leave in moments, added to what there is to ``begin`` with."""
-        a, up = loaded.arrays, self._backend.upload
-        floor = (a["floor"], a["tops"], loaded.highest, loaded.columns, loaded.rows)
-        things = (self.position, a["area"], a["solid"])
-        if not self._backend.on_host:
-            spare = self._buffer("spare", (moments * cells,), np.int32)
-            listed = [np.arange(first, end, dtype=np.int32) for first, end in runs]
-            some = np.concatenate(listed) if listed else np.zeros(0, np.int32)
-            memory = (begin, spare, out, self.ground)
-            self._contact.touch_atomic(*things, up(some), len(some), moments, *floor, *memory)
-            return
-        queue, slots, host = self._backend.crew(moments)
-        stretch = slots // self._backend.threads
-        spare = self._buffer("spare", (slots // stretch * cells // 2 * 3,), np.int32)
-        memory, crew = (begin, spare, out, self.ground), (queue, slots, stretch, host)
-        self._contact.touch(*things, up(runs), moments, *floor, *memory, *crew)
-
-    def _ground_of(self, moment: int) -> Any:
-        """How closely things stand in a moment, flat. Host only."""
-        return self.ground[moment * self._cells : (moment + 1) * self._cells]
-
     def _rest(
         self, loaded: Loaded, palettes: NDArray[np.float32], restless: NDArray[np.bool_]
     ) -> Taken | None:
@@ -201,9 +161,6 @@ class Moments:
         self.ball = self._buffer("ball", (moments + 1, max(clusters, 1), 4), np.float32)
         self.count = moments
         self.shadows.reserve(loaded, moments, height, bool(palettes) and self._style.shadows and lit)
-        self._cells = 2 * loaded.rows * loaded.columns
-        self.ground = self._buffer("ground", ((moments + 1) * self._cells,), np.float32)
-        if self._backend.on_host:
-            self.ground[moments * self._cells if clusters and palettes and lit else 0 :] = 0.0
-        elif not clusters:  # another scene may have left something
-            self.ground.fill(0.0)
+        self.ground.reserve(loaded.rows, loaded.columns, moments)
+        if not (clusters and palettes):
+            self.ground.clear()  # another scene may have left something

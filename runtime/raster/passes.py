@@ -179,7 +179,7 @@ class Passes:
             a["tops"],
             loaded.columns,
             loaded.rows,
-            moments.ground,
+            moments.ground.cells,
             self.film,
             self._lattice,
             layer.vis,

@@ -115,8 +115,10 @@ def touch(
     columns: ti.i32,
     rows: ti.i32,
     resting: i1,
+    still: ti.i32,
     spare: i1,
     counted: i1,
+    stained: i2,
     ground: f1,
     queue: i1,
     slots: ti.i32,
@@ -130,18 +132,25 @@ def touch(
     runs [R, 2]: first vertex and the one after the last of things, or parts of them
     floor: corner x, y, cells a metre, then the heights of the floors, rising; tops: of :func:`find_tops`;
     highest: over which nothing counts
-    resting [2, rows, columns]: what is there in all moments, as ``counted`` [M, 2, rows, columns] gives it:
-    in whole numbers, so that it does not matter what is counted first
-    spare: scratch of 3 * rows * columns for every ``stretch`` slots, all 0 before and after
+    resting [2, rows, columns]: what is there in all moments, in whole numbers, so that it does not matter what
+    is counted first; still: the moment of ``ground`` that has it already, as all of them have but for the cells
+    in ``stained`` [M, 2 * 4], which is renewed; -1 where ``resting`` is all 0 and what there is in the one
+    moment is to go to ``counted``, as whole numbers
+    spare: scratch of 5 * rows * columns for every ``stretch`` slots, all 0 before and after
     """
     for slot in range(slots):
         m = crew.task(slot, moments, queue, host)
         if m < moments:
             cells = rows * columns
-            own, begin = slot // stretch * (3 * cells), 2 * m * cells
-            blurred = own + 2 * cells
-            for i in range(2 * cells):
-                counted[begin + i] = resting[i]
+            own, begin = slot // stretch * (5 * cells), 2 * m * cells
+            blurred, total = own + 2 * cells, own + 3 * cells
+            if still >= 0:
+                for layer in range(2):
+                    for y in range(stained[m, 4 * layer + 2], stained[m, 4 * layer + 3]):
+                        for x in range(stained[m, 4 * layer], stained[m, 4 * layer + 1]):
+                            at = layer * cells + y * columns + x
+                            ground[begin + at] = ground[2 * still * cells + at]
+            around = ti.Matrix([[0, 0, 0, 0], [0, 0, 0, 0]])
             for run in range(runs.shape[0]):
                 box = ti.Matrix([[columns, -1, rows, -1], [columns, -1, rows, -1]])
                 for v in range(runs[run, 0], runs[run, 1]):
@@ -181,13 +190,28 @@ def touch(
                         for y in range(low, high):
                             for x in range(left, right):
                                 at = layer * cells + y * columns + x
-                                counted[begin + at] = counted[begin + at] + spare[own + at]
+                                spare[total + at] = spare[total + at] + spare[own + at]
                                 spare[own + at] = 0
                                 spare[blurred + y * columns + x] = 0
-            for i in range(cells):
-                ground[begin + i] = ti.cast(counted[begin + i], ti.f32) * ti.static(scale(0))
-            for i in range(cells, 2 * cells):
-                ground[begin + i] = ti.cast(counted[begin + i], ti.f32) * ti.static(scale(1))
+                        first = around[layer, 1] == 0
+                        around[layer, 0] = left if first else ti.min(around[layer, 0], left)
+                        around[layer, 1] = ti.max(around[layer, 1], right)
+                        around[layer, 2] = low if first else ti.min(around[layer, 2], low)
+                        around[layer, 3] = ti.max(around[layer, 3], high)
+            if still < 0:
+                for i in range(2 * cells):
+                    counted[i] = spare[total + i]
+                    unit = ti.static(scale(0)) if i < cells else ti.static(scale(1))
+                    ground[i] = ti.cast(counted[i], ti.f32) * unit
+            for layer in ti.static(range(2)):
+                for k in ti.static(range(4)):
+                    stained[m, 4 * layer + k] = around[layer, k]
+                for y in range(around[layer, 2], around[layer, 3]):
+                    for x in range(around[layer, 0], around[layer, 1]):
+                        at = layer * cells + y * columns + x
+                        count = resting[at] + spare[total + at]
+                        ground[begin + at] = ti.cast(count, ti.f32) * ti.static(scale(layer))
+                        spare[total + at] = 0
 
 
 @ti.kernel

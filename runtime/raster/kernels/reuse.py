@@ -236,21 +236,6 @@ def differs(ground: ti.template(), at, rest, cells):
     return ground[at] != ground[rest] or ground[at + cells] != ground[rest + cells]
 
 
-@ti.kernel
-def standing(ground: f1, columns: ti.i32, rows: ti.i32, moments: ti.i32, bounds: i2):
-    """First and last column, first and last row [M, 4] of the floor's cells on which, or on what is there,
-    anything stands that does not in the last moment. ground: of :func:`.contact.touch`"""
-    for m in range(moments):
-        left, right, low, high = columns, -1, rows, -1
-        for j in range(rows):
-            for i in range(columns):
-                at = (2 * m * rows + j) * columns + i
-                if differs(ground, at, (2 * moments * rows + j) * columns + i, rows * columns):
-                    left, right = ti.min(left, i), ti.max(right, i)
-                    low, high = ti.min(low, j), j
-        bounds[m, 0], bounds[m, 1], bounds[m, 2], bounds[m, 3] = left, right, low, high
-
-
 @ti.func
 def stood_on(
     at,

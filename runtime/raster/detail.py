@@ -27,7 +27,7 @@ from .types import LOOSE, RenderScene
 #: Share of the faces kept by each coarser level, and the pixels a metre below which it is drawn.
 LEVELS = ((0.5, 300.0), (0.25, 100.0))
 FINER = 700.0  # pixels a metre from which on the finer level is drawn
-#: In pictures of so few rows, which are looked at as a whole, the same for the finer level and the coarser ones.
+#: In pictures of so few rows, which are looked at as a whole, the same for the finer level and the others.
 SMALL, IN_SMALL = 400, (1400.0, 400.0, 250.0)
 FINEST, OWN = 0, 1  # the finer level, and the mesh as it is; coarser ones follow
 COUNT = OWN + 1 + len(LEVELS)

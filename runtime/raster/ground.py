@@ -1,8 +1,8 @@
-"""How closely things stand over the floor, and over furniture: the cells that contact shadows are looked up in.
+"""How closely things stand over the floor and over furniture: cells that contact shadows are looked up in.
 
-Guarantees that the cells of a moment depend on its palette alone. On a processor the cells that hold nothing
-but what rests are left as they are from call to call, as long as that is the same: of a beach as many as of
-a room are written anew then, those around people.
+Guarantees that the cells of a moment depend on its palette alone. On a processor cells that hold nothing but
+what rests are left as they are from call to call while that is the same: written anew are those around
+people, of a beach as many as of a room.
 """
 
 from __future__ import annotations
@@ -22,8 +22,8 @@ Buffers = Callable[[str, tuple[int, ...], type], Any]
 class Ground:
     """cells: float32 [(M + 1) * 2 * rows * columns] of M moments and of one more in which only what rests is
     there: two layers, the floor and the tops of furniture
-    stained: int32 [M', 2 * 4], first column and the one after the last, first row and the one after the last of
-    the cells of each moment and layer in which there may be more than what rests. On the host only
+    stained: int32 [M', 2 * 4], of each moment and layer the first column and the one after the last, and the
+    first row and the one after the last, of cells with more than what rests, maybe. On the host only
     """
 
     def __init__(self, backend: Backend, buffer: Buffers) -> None:
@@ -54,7 +54,8 @@ class Ground:
     def of(self, moment: int) -> NDArray[np.float32]:
         """The cells of a moment. On the host only."""
         size = 2 * self._grid[0] * self._grid[1]
-        return np.asarray(self.cells[moment * size : (moment + 1) * size])
+        cells: NDArray[np.float32] = self.cells[moment * size : (moment + 1) * size]
+        return cells
 
     def count(self, loaded: Loaded, position: Any, moments: int, moving: NDArray[np.bool_]) -> None:
         """Find what stands where; of what rests, once. position: float32 [M + 1, V, 3]; moving: bool [V]"""
@@ -94,8 +95,8 @@ class Ground:
     def _touch(
         self, loaded: Loaded, position: Any, runs: NDArray[np.int32], moments: int, base: Any, still: int
     ) -> None:
-        """What the vertices of runs leave in moments over what rests, which is in ``base`` and in the cells of
-        moment ``still``; into ``base`` where that is -1."""
+        """What the vertices of runs leave in moments, over what rests, as it is in ``base`` and in the cells
+        of moment ``still``; into ``base`` where that is -1."""
         a, (rows, columns) = loaded.arrays, self._grid
         queue, slots, host = self._backend.crew(moments)
         stretch = slots // self._backend.threads

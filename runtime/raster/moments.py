@@ -86,7 +86,7 @@ class Moments:
         if self._style.occlusion and lit:
             self.ground.count(loaded, self.position, moments, moving)
         if lit and self._backend.on_host:
-            rest = [self.ground.of(moments)]
+            rest: list[NDArray[Any]] = [self.ground.of(moments)]
             rest += [] if taken is None else [taken.clusters, palettes[0, taken.entries]]
             self.still = b"".join(np.ascontiguousarray(part).tobytes() for part in rest)
 

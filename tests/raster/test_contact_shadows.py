@@ -88,3 +88,28 @@ def test_a_camera_that_stands_still_sees_the_same(monkeypatch: pytest.MonkeyPatc
         expected = drawer(style).render(moments, views, SIZE).color
     got = drawer(style).render(moments, views, SIZE).color
     np.testing.assert_array_equal(got, expected)
+
+
+def test_what_stood_there_before_is_forgotten() -> None:
+    """One renderer, call after call, draws what a new one does: other places, more and fewer moments, other
+    things at rest, another scene with as many cells, and one in which nothing moves."""
+    grey = (0.7, 0.8, 0.9)
+    dusk = Light((0.0, 0.0, 1.0), (0, 0, 0), grey, grey, (grey, grey))
+    other = RenderScene(**{**vars(table()), "light": dusk})
+    bare = scene([box((-4, -4, -0.1), (4, 4, 0), (0.7, 0.7, 0.7))], [], light=SKY)
+    here, there = lifted([0.0, 0.0, 0.0]), lifted([0.0] * 5, across=0.4)
+    here[:, 0, 1, 3] = (-0.3, 0.0, 0.3)
+    rests = lifted([0.0, 0.0, 0.0], across=-0.5)
+    rests[:, 1, :, 3] = (-50.0, -50.0, TOP), (-49.8, -50.0, TOP), (-49.6, -50.0, TOP)
+    one = Renderer("cpu", STYLES["board"])
+    for content, palettes in (
+        (table(), here), (table(), there), (table(), here), (table(), rests), (table(), there[:2]),
+        (other, here), (bare, still(1, 2)), (table(), rests), (table(), lifted([5.0, 5.0])),
+    ):  # fmt: skip
+        one.load(content)
+        new = Renderer("cpu", STYLES["board"])
+        new.load(content)
+        views = above(len(palettes))
+        for _ in range(2):
+            got = one.render(palettes, views, SIZE).color
+            np.testing.assert_array_equal(got, new.render(palettes, views, SIZE).color)

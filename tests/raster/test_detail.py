@@ -33,9 +33,11 @@ def body() -> RenderScene:
     return RenderScene(**{**vars(made), "fitting": fitting})
 
 
-def levels_at(*distances: float) -> list[int]:
-    views = looking([(d, 0.0, 1.2) for d in distances], [(0.0, 0.0, 1.2)] * len(distances))
-    packed = pack_views(views.camera, len(distances), 224, 224)
+def levels_at(*distances: float, size: tuple[int, int] = (224, 224), sensor: float = 36.0) -> list[int]:
+    views = looking(
+        [(d, 0.0, 1.2) for d in distances], [(0.0, 0.0, 1.2)] * len(distances), sensor=(sensor, sensor)
+    )
+    packed = pack_views(views.camera, len(distances), *size)
     return with_levels(body()).chosen(still(1), views.moment, packed)[:, 0].tolist()
 
 
@@ -91,6 +93,14 @@ def test_farther_is_coarser_and_close_is_finest() -> None:
     assert chosen == sorted(chosen)
 
 
+def test_a_small_picture_is_content_with_a_coarser_body() -> None:
+    """As many pixels a metre, on a small sensor's small picture and on a large one's large picture."""
+    small = levels_at(1.2, 1.5, 1.8, 3.0, size=(200, 200), sensor=10.0)
+    large = levels_at(1.2, 1.5, 1.8, 3.0, size=(600, 600), sensor=30.0)
+    assert all(a >= b for a, b in zip(small, large, strict=True))
+    assert small != large
+
+
 def test_the_middle_follows_the_palette() -> None:
     made = with_levels(body())
     moved = still(1)
@@ -108,7 +118,7 @@ def test_a_coarser_level_covers_the_same_pixels(monkeypatch: pytest.MonkeyPatch)
     coarse = Renderer("cpu")
     coarse.load(content)
     a = coarse.render(still(1), views, size, ids=True)
-    monkeypatch.setattr("runtime.raster.detail.LEVELS", tuple((share, 0.0) for share, _ in LEVELS))
+    monkeypatch.setattr("runtime.raster.detail.IN_SMALL", (1400.0, 0.0, 0.0))
     finest = Renderer("cpu")
     finest.load(content)
     b = finest.render(still(1), views, size, ids=True)
@@ -184,7 +194,7 @@ def test_flat_faces_are_not_cut() -> None:
 def test_the_levels_of_a_take_are_what_its_nearest_view_takes() -> None:
     drawer, size = Renderer("cpu"), (224, 224)
     drawer.load(body())
-    views = looking([(6.0, 0, 1.2), (1.5, 0, 1.2), (3.0, 0, 1.2)], [(0.0, 0.0, 1.2)] * 3)
+    views = looking([(6.0, 0, 1.2), (1.5, 0, 1.2), (2.2, 0, 1.2)], [(0.0, 0.0, 1.2)] * 3)
     own = drawer.levels(still(1), views, size)
     assert own[0, 0] > own[2, 0] > own[1, 0]
     free = drawer.render(still(1), views, size).color

@@ -48,7 +48,7 @@ class _Facets:
 
 
 def told_apart(meshes: list[Mesh]) -> list[Mesh]:
-    """The meshes, what is flush with a later one sunk below it; those that are not are passed on as they are."""
+    """The meshes, what is flush with a later one sunk below it; the others are passed on as they are."""
     facets, vertices = _facets(meshes)
     pairs = _flush_pairs(facets)
     if not len(pairs):
@@ -90,7 +90,7 @@ def _facets(meshes: list[Mesh]) -> tuple[_Facets, list[NDArray[np.int64]]]:
     look = unique_rows(looks[where[first]])[2]
     of_face = np.full(len(every), -1)
     of_face[where] = facet
-    ends = np.cumsum([len(c) for c in corners])[:-1] if corners else []
+    ends = np.cumsum([len(c) for c in corners])[:-1]
     facets = _Facets(facet, every[real], solid[where[first]], normal[where[first]], low, high, look)
     return facets, np.split(of_face, ends)
 

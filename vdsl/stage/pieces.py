@@ -93,7 +93,11 @@ class Pieces:
     def mesh(self) -> tuple[Mesh, NDArray[np.int32], NDArray[np.int32]]:
         """All that never moves as one mesh, with the owner and the wall of each face, int32 [F]."""
         none = np.zeros(0, np.int32)
-        return join(told_apart(self._meshes)), np.concatenate([*self._owners, none]), np.concatenate([*self._walls, none])
+        return (
+            join(told_apart(self._meshes)),
+            np.concatenate([*self._owners, none]),
+            np.concatenate([*self._walls, none]),
+        )
 
     def solids(self) -> Solids:
         """All boxes in the way."""

@@ -132,10 +132,10 @@ def touch(
     runs [R, 2]: first vertex and the one after the last of things, or parts of them
     floor: corner x, y, cells a metre, then the heights of the floors, rising; tops: of :func:`find_tops`;
     highest: over which nothing counts
-    resting [2, rows, columns]: what is there in all moments, in whole numbers, so that it does not matter what
-    is counted first; still: the moment of ``ground`` that has it already, as all of them have but for the cells
-    in ``stained`` [M, 2 * 4], which is renewed; -1 where ``resting`` is all 0 and what there is in the one
-    moment is to go to ``counted``, as whole numbers
+    resting [2, rows, columns]: what is there in all moments, in whole numbers, so that it does not matter
+    what is counted first; still: the moment of ``ground`` that has it already, as all others have but for the
+    cells in ``stained`` [M, 2 * 4], which is renewed; -1 where ``resting`` is all 0 and what there is in the
+    one moment is to go to ``counted`` too, as whole numbers
     spare: scratch of 5 * rows * columns for every ``stretch`` slots, all 0 before and after
     """
     for slot in range(slots):

@@ -95,6 +95,7 @@ def _changed(
     u = before[14] + before[12] * (offset @ before[3:6]) / safe - 0.5
     v = before[15] - before[13] * (offset @ before[6:9]) / safe - 0.5
     known = ahead & (u >= 1) & (v >= 1) & (u <= width - 2) & (v <= height - 2)
+    known &= (x > 1) & (y > 1) & (x < width - 1) & (y < height - 1)  # the later one is carried, too
     # it must have been in view: the pixel it comes from shows the same surface
     was = _taken(np.minimum(depth[0], _SKY), u, v, cv2.INTER_NEAREST)
     known &= np.abs(was - z) < _SAME_DEPTH * z

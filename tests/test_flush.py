@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from runtime import shapes
 from runtime.mesh import Mesh, join
 from runtime.raster.renderer import Renderer
-from runtime.raster.types import STYLES, Camera, Views
+from runtime.raster.types import STYLES, Camera
 from vdsl.library import Catalog
 from vdsl.pipeline.steadiness import panned, steadiness
 from vdsl.pipeline.trial import stage_script
@@ -115,8 +115,8 @@ def test_a_roof_flush_with_its_gable_does_not_flicker() -> None:
 
 
 def flush_area(corners: NDArray[np.float64], colors: NDArray[np.float32]) -> float:
-    """Square metres that faces [F, 3, 3] of two colours share, looked for one by one: of level faces that look
-    up, by points of a grid of 2 cm."""
+    """Square metres that faces [F, 3, 3] of two colours share: of those that look straight up, by points of a
+    grid of 2 cm."""
     normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     up = normal[:, 2] > 0.9999 * np.linalg.norm(normal, axis=1)
     seen: dict[tuple[int, int, int], tuple[float, ...]] = {}

@@ -50,7 +50,14 @@ _POSTER_CAST = ("detective", "chef", "nurse", "old_woman", "astronaut", "girl", 
 _POSTER_COLUMNS, _GAP, _PAPER = 3, 6, (246, 243, 235)
 _NEAR = 6.0  # metres from the eye to the first person, at most
 _WHOLE = 3.4  # metres; who is nearer does not fit into the picture
-_BESIDE = math.radians(34)  # how far beside the first the second may stand
+_SMALL = 15.0  # metres; who is farther off is a speck
+#: How far beside the first the second stands at least, not to hide behind the other, and at most.
+_CLEAR, _BESIDE = math.radians(7), math.radians(40)
+_SETS = """
+## Sets
+
+Anna stands in each, and Ben beside her where there is a place, so that its size can be told.
+"""
 _HEAD = (
     "<!-- Made by `make gallery`; not edited by hand. -->\n\n# Gallery\n\nWhat the renderer draws, as it "
     "draws it (twice as large as shown here, but for the thumbnails): the cases that tell a good picture "
@@ -142,8 +149,8 @@ class Gallery:
         bare = stage_script(head + line, name)
         room = _largest(bare.staged.world.objects)
         (eye,) = entrances(bare.staged.world, 1)
+        eye = nearer(eye, room.spots[0].position if room.spots else eye.aim, bare.staged.world)
         spots = _apart(eye, room)
-        eye = nearer(eye, spots[0].position if spots else eye.aim, bare.staged.world)
         said = [
             f"{who} at {'.'.join((*room.path, spot.name))}\n"
             for who, spot in zip(("anna", "ben"), spots, strict=False)
@@ -161,15 +168,16 @@ def _largest(objects: Sequence[WorldObject]) -> WorldObject:
 
 
 def _apart(eye: Eye, room: WorldObject) -> list[Spot]:
-    """A room's first spot, and the one that is seen farthest beside it."""
+    """A room's first spot, and the one that is seen farthest beside it, if one is in the picture, clear of
+    the first and neither too near nor too far to be seen whole."""
     if len(room.spots) < 2:
         return list(room.spots)
     turns = [math.atan2(s.position[1] - eye.position[1], s.position[0] - eye.position[0]) for s in room.spots]
     beside = [abs(math.remainder(turn - turns[0], math.tau)) for turn in turns]
     away = [math.dist(s.position[:2], eye.position[:2]) for s in room.spots]
-    # still in the picture, and whole
     seen = [
-        angle if angle < _BESIDE and far > _WHOLE else 0.0 for angle, far in zip(beside, away, strict=True)
+        angle if _CLEAR < angle < _BESIDE and _WHOLE < far < _SMALL else 0.0
+        for angle, far in zip(beside, away, strict=True)
     ]
     return [room.spots[0], room.spots[int(np.argmax(seen))]] if max(seen) > 0 else [room.spots[0]]
 
@@ -191,7 +199,7 @@ def index(catalog: Catalog) -> str:
     parts = [_HEAD, f"\n![Some sets and people of the library]({POSTER}.jpg)\n"]
     for case in CASES:
         parts.append(f"\n## {case.title}\n\n{case.about}\n\n![{case.title}]({case.name}.jpg)\n")
-    parts.append("\n## Sets\n\nAnna and Ben stand in each, so that its size can be told.\n")
+    parts.append(_SETS)
     for name in sorted(catalog.names("set")):
         parts.append(f"\n### {name}\n\n![{name} by day and by night in three looks](set-{name}.jpg)\n")
     return "".join(parts)

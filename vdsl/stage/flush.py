@@ -25,6 +25,7 @@ _FLUSH = 0.00015  # metres that planes may be apart
 _ALIKE = 0.003  # between the normals of planes that are one
 _FAR = 0.1  # share of a distance that is told from that of another plane: 3 cm for normals' 0.003
 _SAME_PLACE = 1e-5  # metres
+_MANY = 64  # pairs of triangles, from which on it is first asked which of them lie near
 _THINNER = 0.2  # share of a solid's thickness that it may be sunk by
 
 Floats = NDArray[np.float64]
@@ -49,7 +50,9 @@ class _Facets:
 
 def told_apart(meshes: list[Mesh]) -> list[Mesh]:
     """The meshes, what is flush with a later one sunk below it; the others are passed on as they are."""
-    facets, vertices = _facets(meshes)
+    if len(meshes) < 2:
+        return meshes
+    facets, of_face = _facets(meshes)
     pairs = _flush_pairs(facets)
     if not len(pairs):
         return meshes
@@ -58,7 +61,7 @@ def told_apart(meshes: list[Mesh]) -> list[Mesh]:
         depth[below] = max(depth[below], depth[above] + 1)
     out = list(meshes)
     for k in np.unique(facets.solid[depth > 0]).tolist():
-        out[k] = _sunk(meshes[k], vertices[k], facets, depth, k)
+        out[k] = _sunk(meshes[k], of_face[k], facets, depth, k)
     return out
 
 
@@ -115,51 +118,67 @@ def _flush_pairs(facets: _Facets) -> NDArray[np.int64]:
             facets.corners[order[starts[a] : starts[a + 1]]],
             facets.corners[order[starts[b] : starts[b + 1]]],
             facets.normal[a],
+            facets.normal[b],
         )
         for a, b in near.tolist()
     ]
     return near[np.array(flush, bool)] if len(near) else near
 
 
-def _are_flush(ours: Floats, theirs: Floats, normal: Floats) -> bool:
-    """Whether triangles [N, 3, 3] and [M, 3, 3] of two planes of one normal lie in each other somewhere."""
-    least = int(np.argmin(np.abs(normal)))
-    side = np.cross(normal, np.eye(3)[least])
-    side /= np.linalg.norm(side)
-    flat = np.stack([side, np.cross(normal, side)], 1)
-    a, b = ours @ flat, theirs @ flat
-    low = np.maximum(a.min(1)[:, None], b.min(1)[None])
-    high = np.minimum(a.max(1)[:, None], b.max(1)[None])
-    for i, j in np.argwhere((high - low > 0).all(-1)).tolist():
-        area, middle = _common(a[i], b[j])
-        if area > _LEAST:
-            at = ours[i, 0] + flat @ (middle - a[i, 0])
-            if abs(float((theirs[j, 0] - at) @ normal)) < _FLUSH:
+def _are_flush(ours: Floats, theirs: Floats, normal: Floats, other: Floats) -> bool:
+    """Whether triangles [N, 3, 3] and [M, 3, 3] of two planes lie in each other somewhere. normal, other: of
+    the planes, which are about the same. In plain numbers: mostly they are a few triangles."""
+    axis = int(np.argmax(np.abs(normal)))
+    u, v = ((1, 2), (2, 0), (0, 1))[axis] if normal[axis] > 0 else ((2, 1), (0, 2), (1, 0))[axis]
+    flat = [u, v]
+    least = _LEAST * abs(float(normal[axis]))  # as it looks along that axis
+    if len(ours) * len(theirs) > _MANY:
+        low = np.maximum(ours[:, None, :, flat].min(2), theirs[None, :, :, flat].min(2))
+        high = np.minimum(ours[:, None, :, flat].max(2), theirs[None, :, :, flat].max(2))
+        pairs = np.argwhere((high - low > 0).all(-1)).tolist()
+    else:
+        pairs = [[i, j] for i in range(len(ours)) for j in range(len(theirs))]
+    a, b = ours[..., flat].tolist(), theirs[..., flat].tolist()
+    for i, j in pairs:
+        area, x, y = _common(a[i], b[j])
+        if area > least:
+            up = _height(x, y, ours[i, 0], normal, (u, v, axis)) - _height(
+                x, y, theirs[j, 0], other, (u, v, axis)
+            )
+            if abs(up * float(normal[axis])) < _FLUSH:
                 return True
     return False
 
 
-def _common(a: Floats, b: Floats) -> tuple[float, Floats]:
-    """Area and middle of what two triangles [3, 2], both counter-clockwise, have in common."""
-    shape = a.tolist()
+def _height(x: float, y: float, point: Floats, normal: Floats, axes: tuple[int, int, int]) -> float:
+    """How far along the last axis a plane lies where the other two are x and y."""
+    u, v, w = axes
+    beside = normal[u] * (x - point[u]) + normal[v] * (y - point[v])
+    return float(point[w] - beside / normal[w])
+
+
+def _common(a: list[list[float]], b: list[list[float]]) -> tuple[float, float, float]:
+    """Area of what two triangles of corners (x, y), both counter-clockwise, share, and the middle of it."""
+    shape = a
     for k in range(3):
-        (x0, y0), (x1, y1) = b[k].tolist(), b[(k + 1) % 3].tolist()
+        (x0, y0), (x1, y1) = b[k - 1], b[k]
         inside = [(x1 - x0) * (y - y0) - (y1 - y0) * (x - x0) for x, y in shape]
+        if min(inside) >= 0:
+            continue
+        if max(inside) <= 0:
+            return 0.0, 0.0, 0.0
         cut = []
         for i, (x, y) in enumerate(shape):
-            if inside[i] >= 0:
-                cut.append((x, y))
-            j = (i + 1) % len(shape)
-            if (inside[i] >= 0) != (inside[j] >= 0):
-                t = inside[i] / (inside[i] - inside[j])
-                cut.append((x + t * (shape[j][0] - x), y + t * (shape[j][1] - y)))
+            before, here = inside[i - 1], inside[i]
+            if (before >= 0) != (here >= 0):
+                t = before / (before - here)
+                x_before, y_before = shape[i - 1]
+                cut.append([x_before + t * (x - x_before), y_before + t * (y - y_before)])
+            if here >= 0:
+                cut.append([x, y])
         shape = cut
-        if len(shape) < 3:
-            return 0.0, np.zeros(2)
-    points = np.array(shape)
-    x, y = points.T
-    area = float((x * np.roll(y, -1) - np.roll(x, -1) * y).sum()) / 2
-    return area, points.mean(0)
+    double = sum(shape[i - 1][0] * y - shape[i - 1][1] * x for i, (x, y) in enumerate(shape))
+    return double / 2, sum(x for x, _ in shape) / len(shape), sum(y for _, y in shape) / len(shape)
 
 
 def _sunk(

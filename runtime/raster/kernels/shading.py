@@ -188,8 +188,8 @@ def shading_kernels(style: Style) -> SimpleNamespace:
                 joined = False
                 painted = False
                 paint_end = ti.Vector([0, 0, 0])
-                stretch = RUN
-                fine = 3 if height <= 400 else 4
+                stretch = RUN if height > 400 else RUN // 2
+                fine = 4 if height > 400 else 2
                 whole = False
                 todo = EVERY
                 x = 0

@@ -407,16 +407,18 @@ def tube(
     tangent /= np.maximum(np.linalg.norm(tangent, axis=1, keepdims=True), 1e-9)
     axis = np.eye(3)[np.argmin(np.abs(tangent[0]))]
     angle = np.arange(sides) * (2 * math.pi / sides)
-    rings, outward = [], []
+    rings, outward, before = [], [], tangent[0]
     for i, (point, along) in enumerate(zip(points, tangent, strict=True)):
         arm = ahead[min(i, len(ahead) - 1)]
         cosine = max(float(arm @ along), 0.5)
         bend = along * cosine - arm
         bend /= max(float(np.linalg.norm(bend)), 1e-9)
         stretch = 1.0 / cosine - 1.0
-        u = axis - along * (axis @ along)
+        # turned as the bar turns, so that the rings do not twist (parallel transport)
+        u = axis - (before + along) * ((axis @ along) / max(1.0 + float(before @ along), 1e-9))
+        u -= along * (u @ along)
         u /= max(float(np.linalg.norm(u)), 1e-9)
-        axis = u  # carried along, so that the rings do not twist
+        axis, before = u, along
         v = np.cross(along, u)
         out = np.cos(angle)[:, None] * u + np.sin(angle)[:, None] * v
         outward.append(out)

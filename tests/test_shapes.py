@@ -145,3 +145,19 @@ def test_a_side_beside_a_narrow_rounding_stays_straight() -> None:
         walls = long & (np.abs(mesh.normals[mesh.faces][..., up]).max(axis=1) < 0.5)
         assert walls.any()
         assert np.abs(mesh.normals[mesh.faces][walls][..., up]).max() < 0.1
+
+
+@pytest.mark.parametrize(
+    "path",
+    [
+        ((-0.1, 0, 0), (-0.1, 0, 0.4), (0.1, 0, 0.4), (0.1, 0, 0)),  # a handle
+        ((0, 0, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1), (0, 1, 0)),
+        ((0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0.1, 0)),
+    ],
+)
+def test_a_tube_is_as_thick_after_its_bends(path: tuple[tuple[float, float, float], ...]) -> None:
+    mesh = shapes.tube(path, 0.01, 12)
+    length = float(np.linalg.norm(np.diff(np.array(path), axis=0), axis=1).sum())
+    across = 12 / 2 * np.sin(2 * np.pi / 12) * 0.01**2
+    assert shapes.volume(mesh) == pytest.approx(length * across, rel=0.01)
+    np.testing.assert_allclose(np.linalg.norm(mesh.normals, axis=1), 1, atol=1e-5)

@@ -1,4 +1,4 @@
-"""How steady the sets of the library are on a slow pan: the share of pixels that change by more than 16 of 255.
+"""How steady sets of the library are on a slow pan: the share of pixels that change by more than 16 of 255.
 
     python -m tests.benchmarks.bench_steady [--time night] [--style ink] [SET ...]
 

@@ -103,6 +103,24 @@ def test_a_wall_through_the_camera(drawer: Renderer) -> None:
         assert compare(drawer, content, views, (49, 37), still(1)) > 0.9
 
 
+def test_a_beam_beside_the_eye_is_as_far_as_it_is(drawer: Renderer) -> None:
+    """Long, narrow and across the eye's plane, off to the side: it came out metres too near or too far."""
+    beam = box((-5, 3.0, 3.1), (15, 3.06, 3.4), (0.3, 0.5, 0.7))
+    floor = box((-5, -2, -0.1), (15, 3, 0), (0.6, 0.6, 0.5))
+    for content in (scene([floor, beam], []), scene([floor], [beam])):
+        drawer.load(content)
+        aims = [(8.0, 3.0 + 0.02 * k, 3.1) for k in range(4)]
+        views = looking([(0.0, 0.0, 0.15)] * 4, aims, focal=30)
+        size = (320, 180)
+        z = drawer.render(still(1), views, size, depth=True).depth
+        assert z is not None
+        for n in range(4):
+            t = trace(content, views, n, size, PLAIN.quiet, palettes=still(1))
+            sure = t.sure & np.isfinite(t.depth)
+            assert (t.ids[sure] == 1).sum() > 300
+            np.testing.assert_allclose(z[n][sure], t.depth[sure], rtol=2e-4)
+
+
 def test_triangles_far_larger_than_the_picture(drawer: Renderer) -> None:
     far = 2000.0
     ground = from_lists(

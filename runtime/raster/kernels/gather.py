@@ -14,6 +14,7 @@ import taichi as ti
 
 from . import crew
 from .geometry import (
+    CLOSE,
     NEAR,
     bounded,
     cut,
@@ -38,7 +39,7 @@ TAGS = 3  # numbers kept with a triangle on the screen: triangle + 1, first row,
 BUNDLE = 32  # triangles on the screen, one after another, whose rows are kept together
 GROUPS = 4  # of LANES triangles in a cluster, at most
 EVERY, TAKEN, OTHERS = 0, 1, 2  # which of the moving clusters a view draws
-WHOLE, ACROSS = 1.0, 2.0  # states of a lane: in front of the near plane, or across it
+WHOLE, ACROSS = 1.0, 2.0  # states of a lane: well in front of the near plane, or near it or across
 EVEN = 12582912.0  # 1.5 * 2^23: adding and taking it off rounds to whole numbers
 
 V = ti.types.vector(LANES, ti.f32)
@@ -133,7 +134,8 @@ def gather(
     are TAKEN, or the OTHERS
     still, moving: their corners (:func:`arrange`)
     work [views * 10]: scratch, ``lane`` its memory; corner [views, 2 F, CORNERS], tag [views, 2 F, TAGS]:
-    what is found; clipped [views, F]: triangles across the near plane; counts [views, 2]: how many of both
+    what is found; clipped [views, F]: triangles near the near plane or across it; counts [views, 2]: how many
+    of both
     """
     for slot in range(slots):
         n = crew.task(slot, views, queue, host)
@@ -209,7 +211,7 @@ def gather(
                         if clusters[c, 2] == 0:
                             front = ti.select(front < 0.0, 0.0 - front, front)
                         nearest, farthest = least3(az, bz, cz), most3(az, bz, cz)
-                        whole = nearest > NEAR
+                        whole = nearest > CLOSE
                         aw, bw, cw = 1.0 / az, 1.0 / bz, 1.0 / cz
                         ax = half_x + scale_x * ax * aw
                         bx = half_x + scale_x * bx * bw
@@ -287,7 +289,7 @@ def clip(
     slots: ti.i32,
     host: ti.template(),
 ):
-    """Cut the triangles across the near plane that :func:`gather` found; add what is left to its findings.
+    """Cut the triangles near the near plane that :func:`gather` found; add what is left to its findings.
 
     extent: [views, bundles of a view, 2], first row and row after the last of each BUNDLE of findings;
         all rows unless ``banded``, as then every band looks at all of them

@@ -12,6 +12,11 @@ walked from their upper end, so triangles that share one agree on it to the last
 import taichi as ti
 
 NEAR = 0.03  # metres
+#: Metres; a triangle that comes nearer is cut off where it comes into view (:func:`seen_from`). Near the plane
+#: of the eye its corners may lie 100,000 pixels beside the picture, and the depth of a long and narrow one
+#: would be left to rounding.
+CLOSE = 0.5
+NEVER = 1e30  # metres
 STRIPS = 8  # interleaved rows a triangle is shared by
 vec3 = ti.types.vector(3, ti.f32)
 
@@ -179,8 +184,37 @@ def fill(vis: ti.template(), exact: ti.template(), base, width, y_from, y_to, y_
 
 
 @ti.func
+def seen_from(slope_x, slope_y, p0, p1, p2):
+    """A distance ahead from which on a triangle may be in view, NEVER if nowhere. slope_x, slope_y: of the
+    sides of the view's pyramid. Side by side: the least distance of what lies within it."""
+    out = 0.0
+    for k in range(4):
+        slope, sign = slope_x if k < 2 else slope_y, 1.0 if k & 1 == 0 else -1.0
+        a, b, c = p0.x, p1.x, p2.x
+        if k >= 2:
+            a, b, c = p0.y, p1.y, p2.y
+        a, b, c = p0.z * slope - sign * a, p1.z * slope - sign * b, p2.z * slope - sign * c
+        least = NEVER
+        if a >= 0:
+            least = lesser(least, p0.z)
+        if b >= 0:
+            least = lesser(least, p1.z)
+        if c >= 0:
+            least = lesser(least, p2.z)
+        if (a >= 0) != (b >= 0):
+            least = lesser(least, p0.z + (p1.z - p0.z) * (a / (a - b)))
+        if (b >= 0) != (c >= 0):
+            least = lesser(least, p1.z + (p2.z - p1.z) * (b / (b - c)))
+        if (c >= 0) != (a >= 0):
+            least = lesser(least, p2.z + (p0.z - p2.z) * (c / (c - a)))
+        out = greater(out, least)
+    return out
+
+
+@ti.func
 def cut(cull, scale, half, p0, p1, p2):
-    """Cull, clip at the near plane and project one triangle given in camera coordinates.
+    """Cull, clip at the near plane, or where it comes into view, and project one triangle given in camera
+    coordinates.
 
     Returns how many triangles are left (0..2) and a fan of four corners on the screen. Right, up, forward is
     a left-handed frame: a positive determinant faces the camera.
@@ -189,29 +223,34 @@ def cut(cull, scale, half, p0, p1, p2):
     sa, sb, sc, sd = vec3(0), vec3(0), vec3(0), vec3(0)
     facing = p0.dot((p1 - p0).cross(p2 - p0))  # of the corners alone, rounding would hide small ones
     if facing > 0 or (facing < 0 and not cull):
-        inside = ti.cast(p0.z > NEAR, ti.i32) + ti.cast(p1.z > NEAR, ti.i32) + ti.cast(p2.z > NEAR, ti.i32)
+        near = NEAR
+        if lesser(lesser(p0.z, p1.z), p2.z) <= CLOSE:
+            # a pixel and a hundredth to spare
+            from_here = seen_from((half.x + 1.0) / scale.x, (half.y + 1.0) / scale.y, p0, p1, p2)
+            near = greater(near, 0.99 * from_here)
+        inside = ti.cast(p0.z > near, ti.i32) + ti.cast(p1.z > near, ti.i32) + ti.cast(p2.z > near, ti.i32)
         if inside > 0:
             a, b, c, d = p0, p1, p2, p2
             pieces = 1
             if inside == 1:
                 # a becomes the corner in front
-                if p1.z > NEAR:
+                if p1.z > near:
                     a, b, c = p1, p2, p0
-                elif p2.z > NEAR:
+                elif p2.z > near:
                     a, b, c = p2, p0, p1
-                b, c = a + (b - a) * ((a.z - NEAR) / (a.z - b.z)), a + (c - a) * ((a.z - NEAR) / (a.z - c.z))
-                b.z = NEAR
-                c.z = NEAR
+                b, c = a + (b - a) * ((a.z - near) / (a.z - b.z)), a + (c - a) * ((a.z - near) / (a.z - c.z))
+                b.z = near
+                c.z = near
             elif inside == 2:
                 # a becomes the corner behind, and is cut off
-                if p1.z <= NEAR:
+                if p1.z <= near:
                     a, b, c = p1, p2, p0
-                elif p2.z <= NEAR:
+                elif p2.z <= near:
                     a, b, c = p2, p0, p1
-                d = c + (a - c) * ((c.z - NEAR) / (c.z - a.z))
-                a = b + (a - b) * ((b.z - NEAR) / (b.z - a.z))
-                a.z = NEAR
-                d.z = NEAR
+                d = c + (a - c) * ((c.z - near) / (c.z - a.z))
+                a = b + (a - b) * ((b.z - near) / (b.z - a.z))
+                a.z = near
+                d.z = near
                 pieces = 2
             sa = screen(a, scale, half)
             sb = screen(b, scale, half)

@@ -12,9 +12,9 @@ walked from their upper end, so triangles that share one agree on it to the last
 import taichi as ti
 
 NEAR = 0.03  # metres
-#: Metres; a triangle that comes nearer is cut off where it comes into view (:func:`seen_from`). Near the plane
-#: of the eye its corners may lie 100,000 pixels beside the picture, and the depth of a long and narrow one
-#: would be left to rounding.
+#: Metres; a triangle that comes nearer is cut off where it comes into view (:func:`seen_from`). Near the
+#: plane of the eye its corners may lie 100,000 pixels beside the picture, and the depth of a long and narrow
+#: one would be left to rounding.
 CLOSE = 0.5
 NEVER = 1e30  # metres
 STRIPS = 8  # interleaved rows a triangle is shared by

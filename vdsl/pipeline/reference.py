@@ -8,9 +8,12 @@ from __future__ import annotations
 
 import argparse
 from collections import defaultdict
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
+from functools import partial
 from pathlib import Path
 from typing import TypeVar
+
+from PIL import Image
 
 from ..lang.definitions.action import GROUPS
 from ..library import Catalog
@@ -131,26 +134,27 @@ def _words(names: object) -> str:
     return ", ".join(f"{stem} ({stems.count(stem)})" if stems.count(stem) > 1 else stem for stem in seen)
 
 
-def draw(catalog: Catalog, folder: Path) -> None:
-    """The pages' pictures, as JPEG into a folder."""
+def draw(catalog: Catalog, folder: Path, only: Sequence[str] = ()) -> None:
+    """The pages' pictures, as JPEG into a folder; only: names of some, or how they begin, nothing for all."""
     from .preview import Studio
 
     folder.mkdir(parents=True, exist_ok=True)
     studio = Studio(catalog)
 
-    def save(name: str, image: object) -> None:
-        image.save(folder / f"{name}.jpg", quality=76, optimize=True)  # type: ignore[attr-defined]
-        print(folder / f"{name}.jpg", flush=True)
+    def save(name: str, drawing: Callable[[], Image.Image]) -> None:
+        if not only or name.startswith(tuple(only)):
+            drawing().save(folder / f"{name}.jpg", quality=76, optimize=True)
+            print(folder / f"{name}.jpg", flush=True)
 
     for group in GROUPS:
         members = [row.name for row in _of(catalog, "action", ActionRow) if row.group == group]
         if members:
-            save(f"actions-{group}", studio.actions(members, (112, 140), 6))
-    save("cast", studio.cast(list(catalog.names("cast")), 330))
+            save(f"actions-{group}", partial(studio.actions, members, (112, 140), 6))
+    save("cast", partial(studio.cast, list(catalog.names("cast")), 330))
     for file, props in sorted(_by_file(_of(catalog, "prop", PropRow)).items()):
-        save(f"props-{file}", studio.props([row.name for row in props], 140, 8))
+        save(f"props-{file}", partial(studio.props, [row.name for row in props], 140, 8))
     for name in catalog.names("set"):
-        save(f"set-{name}", studio.set(name, width=560))
+        save(f"set-{name}", partial(studio.set, name, width=560))
 
 
 def main() -> None:
@@ -158,13 +162,16 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else "")
     parser.add_argument("folder", type=Path)
     parser.add_argument("--pages", action="store_true", help="the pages alone, no pictures")
+    parser.add_argument(
+        "--only", nargs="+", default=(), metavar="NAME", help="of the pictures, such as set-cafe"
+    )
     given = parser.parse_args()
     given.folder.mkdir(parents=True, exist_ok=True)
     catalog = Catalog()
     for name, text in pages(catalog).items():
         (given.folder / name).write_text(text, encoding="utf-8")
     if not given.pages:
-        draw(catalog, given.folder / "images")
+        draw(catalog, given.folder / "images", given.only)
 
 
 if __name__ == "__main__":

@@ -25,6 +25,9 @@ _FLUSH = 0.00015  # metres that planes may be apart
 _ALIKE = 0.003  # between the normals of planes that are one
 _FAR = 0.1  # share of a distance that is told from that of another plane: 3 cm for normals' 0.003
 _SAME_PLACE = 1e-5  # metres
+#: Facets; what has more is a scan or a landscape, nearly flat and without a plane, and each of its facets
+#: would be compared with every other one.
+_MOST = 4000
 _MANY = 64  # pairs of triangles, from which on it is first asked which of them lie near
 _THINNER = 0.2  # share of a solid's thickness that it may be sunk by
 
@@ -100,11 +103,12 @@ def _facets(meshes: list[Mesh]) -> tuple[_Facets, list[NDArray[np.int64]]]:
 
 def _flush_pairs(facets: _Facets) -> NDArray[np.int64]:
     """Pairs [P, 2] of facets of different meshes that are flush somewhere, the earlier mesh's first."""
-    away = (facets.normal * (facets.low + facets.high) / 2).sum(1)
-    places = np.concatenate([facets.normal, _FAR * away[:, None]], 1)
-    if len(places) < 2:
+    few = np.flatnonzero(np.bincount(facets.solid)[facets.solid] <= _MOST)
+    if len(few) < 2:
         return np.zeros((0, 2), np.int64)
-    near = cKDTree(places).query_pairs(_ALIKE, output_type="ndarray")
+    away = (facets.normal * (facets.low + facets.high) / 2).sum(1)
+    places = np.concatenate([facets.normal, _FAR * away[:, None]], 1)[few]
+    near = few[cKDTree(places).query_pairs(_ALIKE, output_type="ndarray")]
     low, high = np.maximum(*facets.low[near.T]), np.minimum(*facets.high[near.T])
     common = np.sort(high - low, axis=1)  # of flush ones the least is 0, and the others are sides
     a, b = near.T

@@ -35,7 +35,9 @@ from .geometry import (
 LANES = 16  # 1 << LANE_BITS
 LANE_BITS = 4
 CORNERS = 9  # numbers of a triangle: three corners, x y z
-TAGS = 3  # numbers kept with a triangle on the screen: triangle + 1, first row, row after the last
+#: Numbers kept with a triangle on the screen: triangle + 1, first row, row after the last. The first is
+#: negative where the corners have the numbers of a plane (``geometry.plane_of``) in place of their 1/z.
+TAGS = 3
 BUNDLE = 32  # triangles on the screen, one after another, whose rows are kept together
 GROUPS = 4  # of LANES triangles in a cluster, at most
 EVERY, TAKEN, OTHERS = 0, 1, 2  # which of the moving clusters a view draws
@@ -314,7 +316,7 @@ def clip(
                     p0 = row3(vertices, faces[t, 0]) - eye
                     p1 = row3(vertices, faces[t, 1]) - eye
                     p2 = row3(vertices, faces[t, 2]) - eye
-                pieces, sa, sb, sc, sd = cut(
+                pieces, sa, sb, sc, sd, planar, plane = cut(
                     (info[t, 1] >> 10) & 1 != 0,
                     ti.Vector([view[n, 12], view[n, 13]]),
                     ti.Vector([view[n, 14], view[n, 15]]),
@@ -330,11 +332,14 @@ def clip(
                         corner[to + a] = sa[a]
                         corner[to + 3 + a] = sb[a]
                         corner[to + 6 + a] = sc[a]
+                    if planar:
+                        for a in ti.static(range(3)):
+                            corner[to + 3 * a + 2] = plane[a]
                     top = to_pixel(lesser(lesser(sa.y, sb.y), sc.y))
                     bottom = to_pixel(greater(greater(sa.y, sb.y), sc.y))
                     tall = ti.cast(height, ti.f32)
                     to = (n * 2 * most + found) * TAGS
-                    tag[to] = t + 1
+                    tag[to] = -(t + 1) if planar else t + 1
                     tag[to + 1] = ti.cast(bounded(top, 0.0, tall), ti.i32)
                     tag[to + 2] = ti.cast(bounded(bottom, 0.0, tall), ti.i32)
                     found += 1

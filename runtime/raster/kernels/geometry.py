@@ -12,11 +12,11 @@ walked from their upper end, so triangles that share one agree on it to the last
 import taichi as ti
 
 NEAR = 0.03  # metres
-#: Metres; a triangle that comes nearer is cut off where it comes into view (:func:`seen_from`). Near the
-#: plane of the eye its corners may lie 100,000 pixels beside the picture, and the depth of a long and narrow
-#: one would be left to rounding.
+#: Metres; of a triangle that comes nearer, the depth is that of its plane (:func:`plane_of`). Near the plane
+#: of the eye corners may lie 100,000 pixels beside the picture, where rounding moves them by a hundredth of
+#: one, and depths between such corners of a long and narrow one by metres.
 CLOSE = 0.5
-NEVER = 1e30  # metres
+FAINTEST = 1e-6  # 1/z, of what is a thousand kilometres away
 STRIPS = 8  # interleaved rows a triangle is shared by
 vec3 = ti.types.vector(3, ti.f32)
 
@@ -129,8 +129,13 @@ def to_pixel(v):
 
 
 @ti.func
-def fill(vis: ti.template(), exact: ti.template(), base, width, y_from, y_to, y_step, low, a, b, c):
-    """Walk the spans of one screen triangle; corners are (x, y, 1/z), ``low`` the low word of the key."""
+def fill(
+    vis: ti.template(), exact: ti.template(), base, width, y_from, y_to, y_step, low, a, b, c, planar, plane
+):
+    """Walk the spans of one screen triangle; corners are (x, y, 1/z), ``low`` the low word of the key.
+
+    planar, plane: as :func:`cut` has them
+    """
     top = to_pixel(lesser(lesser(a.y, b.y), c.y))
     bottom = to_pixel(greater(greater(a.y, b.y), c.y))
     left = to_pixel(lesser(lesser(a.x, b.x), c.x))
@@ -158,6 +163,11 @@ def fill(vis: ti.template(), exact: ti.template(), base, width, y_from, y_to, y_
             slope_y = (ac.z * ab.x - ab.z * ac.x) * inverse
             least = lesser(lesser(a.z, b.z), c.z)
             most = greater(greater(a.z, b.z), c.z)
+            known = a
+            if planar:
+                slope_x, slope_y = plane.x, plane.y
+                known = vec3(0.0, 0.0, plane.z)
+                least, most = FAINTEST, 1.0 / NEAR
             long = ac.x / ac.y
             upper = ab.x / ab.y if ab.y > 0 else 0.0
             lower = bc.x / bc.y if bc.y > 0 else 0.0
@@ -170,7 +180,7 @@ def fill(vis: ti.template(), exact: ti.template(), base, width, y_from, y_to, y_
                     xb = b.x + (centre - b.y) * lower
                 x0 = ti.cast(bounded(to_pixel(lesser(xa, xb)), 0.0, limit), ti.i32)
                 x1 = ti.cast(bounded(to_pixel(greater(xa, xb)), 0.0, limit), ti.i32)
-                row = a.z + (centre - a.y) * slope_y + (0.5 - a.x) * slope_x
+                row = known.z + (centre - known.y) * slope_y + (0.5 - known.x) * slope_x
                 start = base + y * width
                 for x in range(x0, x1):
                     w = bounded(row + ti.cast(x, ti.f32) * slope_x, least, most)
@@ -184,79 +194,66 @@ def fill(vis: ti.template(), exact: ti.template(), base, width, y_from, y_to, y_
 
 
 @ti.func
-def seen_from(slope_x, slope_y, p0, p1, p2):
-    """A distance ahead from which on a triangle may be in view, NEVER if nowhere. slope_x, slope_y: of the
-    sides of the view's pyramid. Side by side: the least distance of what lies within it."""
-    out = 0.0
-    for k in range(4):
-        slope, sign = slope_x if k < 2 else slope_y, 1.0 if k & 1 == 0 else -1.0
-        a, b, c = p0.x, p1.x, p2.x
-        if k >= 2:
-            a, b, c = p0.y, p1.y, p2.y
-        a, b, c = p0.z * slope - sign * a, p1.z * slope - sign * b, p2.z * slope - sign * c
-        least = NEVER
-        if a >= 0:
-            least = lesser(least, p0.z)
-        if b >= 0:
-            least = lesser(least, p1.z)
-        if c >= 0:
-            least = lesser(least, p2.z)
-        if (a >= 0) != (b >= 0):
-            least = lesser(least, p0.z + (p1.z - p0.z) * (a / (a - b)))
-        if (b >= 0) != (c >= 0):
-            least = lesser(least, p1.z + (p2.z - p1.z) * (b / (b - c)))
-        if (c >= 0) != (a >= 0):
-            least = lesser(least, p2.z + (p0.z - p2.z) * (c / (c - a)))
-        out = greater(out, least)
-    return out
+def plane_of(normal, offset, scale, half):
+    """1/z of a plane over the screen: what a pixel to the right and one down add, and at its corner.
+
+    normal: in camera coordinates, of any length; offset: its product with a point of the plane
+    """
+    x, y = normal.x / (scale.x * offset), -normal.y / (scale.y * offset)
+    return vec3(x, y, normal.z / offset - x * half.x - y * half.y)
+
+
+@ti.func
+def fits(plane, s):
+    """Whether a plane has about the 1/z of a corner on the screen: seen edge on, it is left to rounding."""
+    return ti.abs(plane.x * s.x + plane.y * s.y + plane.z - s.z) < 0.05 * s.z
 
 
 @ti.func
 def cut(cull, scale, half, p0, p1, p2):
-    """Cull, clip at the near plane, or where it comes into view, and project one triangle given in camera
-    coordinates.
+    """Cull, clip at the near plane and project one triangle given in camera coordinates.
 
-    Returns how many triangles are left (0..2) and a fan of four corners on the screen. Right, up, forward is
-    a left-handed frame: a positive determinant faces the camera.
+    Returns how many triangles are left (0..2), a fan of four corners on the screen, whether their depth is
+    that of a plane, and that (:func:`plane_of`). Right, up, forward is a left-handed frame: a positive
+    determinant faces the camera.
     """
-    pieces = 0
-    sa, sb, sc, sd = vec3(0), vec3(0), vec3(0), vec3(0)
-    facing = p0.dot((p1 - p0).cross(p2 - p0))  # of the corners alone, rounding would hide small ones
+    pieces, planar = 0, False
+    sa, sb, sc, sd, plane = vec3(0), vec3(0), vec3(0), vec3(0), vec3(0)
+    normal = (p1 - p0).cross(p2 - p0)
+    facing = p0.dot(normal)  # of the corners alone, rounding would hide small ones
     if facing > 0 or (facing < 0 and not cull):
-        near = NEAR
-        if lesser(lesser(p0.z, p1.z), p2.z) <= CLOSE:
-            # a pixel and a hundredth to spare
-            from_here = seen_from((half.x + 1.0) / scale.x, (half.y + 1.0) / scale.y, p0, p1, p2)
-            near = greater(near, 0.99 * from_here)
-        inside = ti.cast(p0.z > near, ti.i32) + ti.cast(p1.z > near, ti.i32) + ti.cast(p2.z > near, ti.i32)
+        inside = ti.cast(p0.z > NEAR, ti.i32) + ti.cast(p1.z > NEAR, ti.i32) + ti.cast(p2.z > NEAR, ti.i32)
         if inside > 0:
             a, b, c, d = p0, p1, p2, p2
             pieces = 1
             if inside == 1:
                 # a becomes the corner in front
-                if p1.z > near:
+                if p1.z > NEAR:
                     a, b, c = p1, p2, p0
-                elif p2.z > near:
+                elif p2.z > NEAR:
                     a, b, c = p2, p0, p1
-                b, c = a + (b - a) * ((a.z - near) / (a.z - b.z)), a + (c - a) * ((a.z - near) / (a.z - c.z))
-                b.z = near
-                c.z = near
+                b, c = a + (b - a) * ((a.z - NEAR) / (a.z - b.z)), a + (c - a) * ((a.z - NEAR) / (a.z - c.z))
+                b.z = NEAR
+                c.z = NEAR
             elif inside == 2:
                 # a becomes the corner behind, and is cut off
-                if p1.z <= near:
+                if p1.z <= NEAR:
                     a, b, c = p1, p2, p0
-                elif p2.z <= near:
+                elif p2.z <= NEAR:
                     a, b, c = p2, p0, p1
-                d = c + (a - c) * ((c.z - near) / (c.z - a.z))
-                a = b + (a - b) * ((b.z - near) / (b.z - a.z))
-                a.z = near
-                d.z = near
+                d = c + (a - c) * ((c.z - NEAR) / (c.z - a.z))
+                a = b + (a - b) * ((b.z - NEAR) / (b.z - a.z))
+                a.z = NEAR
+                d.z = NEAR
                 pieces = 2
             sa = screen(a, scale, half)
             sb = screen(b, scale, half)
             sc = screen(c, scale, half)
             sd = screen(d, scale, half)
-    return pieces, sa, sb, sc, sd
+            if lesser(lesser(p0.z, p1.z), p2.z) <= CLOSE:
+                plane = plane_of(normal, facing, scale, half)
+                planar = fits(plane, sa) and fits(plane, sb) and fits(plane, sc) and fits(plane, sd)
+    return pieces, sa, sb, sc, sd, planar, plane
 
 
 @ti.func
@@ -313,7 +310,7 @@ def raster_atomic(
                 p0 = row3(vertices, faces[t, 0]) - eye
                 p1 = row3(vertices, faces[t, 1]) - eye
                 p2 = row3(vertices, faces[t, 2]) - eye
-            pieces, sa, sb, sc, sd = cut(
+            pieces, sa, sb, sc, sd, planar, plane = cut(
                 (info[t, 1] >> 10) & 1 != 0,
                 ti.Vector([view[n, 12], view[n, 13]]),
                 ti.Vector([view[n, 14], view[n, 15]]),
@@ -336,4 +333,6 @@ def raster_atomic(
                     sa,
                     sb,
                     sc,
+                    planar,
+                    plane,
                 )

@@ -11,7 +11,7 @@ import taichi as ti
 
 from . import crew
 from .gather import BUNDLE, CORNERS, EVEN, LANE_BITS, LANES, TAGS, I, V, fv, iv
-from .geometry import f1, greater, i1, i2, lesser, u32s, u64s
+from .geometry import FAINTEST, NEAR, f1, greater, i1, i2, lesser, u32s, u64s
 
 uv = ti.types.ndarray(dtype=ti.types.vector(LANES, ti.u32), ndim=1)
 qv = ti.types.ndarray(dtype=ti.types.vector(LANES, ti.u64), ndim=1)
@@ -111,6 +111,9 @@ def paint(
                     bx, by, bz = corner[at + 3], corner[at + 4], corner[at + 5]
                     cx, cy, cz = corner[at + 6], corner[at + 7], corner[at + 8]
                     t = tag[k * TAGS]
+                    planar = t < 0
+                    t = ti.abs(t)
+                    plane_x, plane_y, plane_z = az, bz, cz
                     if ay > by:
                         ax, bx = bx, ax
                         ay, by = by, ay
@@ -133,6 +136,11 @@ def paint(
                         slope_y = (acz * abx - abz * acx) * inverse
                         least = lesser(lesser(az, bz), cz)
                         nearest = greater(greater(az, bz), cz)
+                        known_x, known_y, known_z = ax, ay, az
+                        if planar:
+                            slope_x, slope_y = plane_x, plane_y
+                            known_x, known_y, known_z = 0.0, 0.0, plane_z
+                            least, nearest = FAINTEST, 1.0 / NEAR
                         long = acx / acy
                         upper = abx / aby if aby > 0 else 0.0
                         lower = bcx / bcy if bcy > 0 else 0.0
@@ -145,7 +153,9 @@ def paint(
                             )
                             line[3 * worker] = pixels(ti.select(xa < xb, xa, xb), limit)
                             line[3 * worker + 1] = pixels(ti.select(xa > xb, xa, xb), limit)
-                            line[3 * worker + 2] = az + (centre - ay) * slope_y + (0.5 - ax) * slope_x
+                            line[3 * worker + 2] = (
+                                known_z + (centre - known_y) * slope_y + (0.5 - known_x) * slope_x
+                            )
                             start = own + (y - y_from) * groups
                             for j in range(3 * worker * LANES, 3 * worker * LANES + ti.min(LANES, y_end - y)):
                                 from_x, to_x = number[j], number[j + LANES]

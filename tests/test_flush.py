@@ -161,3 +161,44 @@ def test_a_rough_landscape_is_left_alone_and_costs_little() -> None:
     got = told_apart([land, trunk, plate])
     assert got[0] is land
     assert tops(got[1:]) == pytest.approx([2 - HAIR, 2])
+
+
+@pytest.mark.parametrize("turned", [False, True])
+def test_a_slanting_triangle_and_what_is_flush_with_it(turned: bool) -> None:
+    """As of a hipped roof: the middle of its bounds lies far off its plane."""
+
+    def slab(corners: list[tuple[float, float]]) -> Mesh:
+        made = shapes.extrude(corners, 0.1, RED if len(corners) == 3 else BLUE)
+        lean = np.eye(4)
+        lean[:3, :3] = np.linalg.qr(np.array([[1.0, 0.3, 0.2], [-0.2, 1.0, 0.4], [-0.3, -0.5, 1.0]]))[0]
+        return made.transformed(lean)
+
+    roof, patch = slab([(0, 0), (4, 0), (0, 4)]), slab([(0.5, 0.5), (1, 0.5), (1, 1), (0.5, 1)])
+    angle = np.radians(33.0 if turned else 0.0)
+    turn = np.eye(4)
+    turn[:2, :2] = [[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]]
+    below, above = told_apart([roof.transformed(turn), patch.transformed(turn)])
+    assert below is not roof
+    assert np.abs(below.vertices - roof.transformed(turn).vertices).max() == pytest.approx(HAIR, abs=2e-4)
+    assert (above.vertices == patch.transformed(turn).vertices).all()
+
+
+def test_thin_sheets_lie_in_their_order() -> None:
+    sheets = [block((1 - 0.1 * k, 1, 0.0015), (0, 0, 0), c) for k, c in enumerate((RED, BLUE, GREEN))]
+    got = tops(told_apart(sheets))
+    assert got == sorted(got)
+    assert min(b - a for a, b in pairwise(got)) > 1e-4
+
+
+def test_large_flat_grids_are_compared_in_little_memory() -> None:
+    def grid(color: shapes.Colour, z: float) -> Mesh:
+        side = 40
+        x, y = np.meshgrid(np.arange(side) * 0.1, np.arange(side) * 0.1, indexing="ij")
+        a = (np.arange(side - 1)[:, None] * side + np.arange(side - 1)).ravel()
+        faces = [np.stack([a, a + side, a + side + 1], 1), np.stack([a, a + side + 1, a + 1], 1)]
+        vertices = np.stack([x, y, np.full_like(x, z)], -1).reshape(-1, 3)
+        up = np.tile([0.0, 0.0, 1.0], (len(vertices), 1))
+        return shapes.painted(vertices, np.concatenate(faces), up, color)
+
+    below, above = told_apart([grid(RED, 1.0), grid(BLUE, 1.0)])
+    assert above.vertices[0, 2] - below.vertices[0, 2] == pytest.approx(HAIR, abs=1e-6)

@@ -26,7 +26,7 @@ VERTEX = 2 * 12  # place and normal
 CORNERS = 100  # of a triangle that is drawn, which may leave two on the screen, on the host
 CLUSTER = 16 + 4 * 9 * 16 * 4  # bounds, and corners as they are arranged for vectors
 TEXEL = 4 + 2 * 4 * 0.2  # of a shadow map, and its summaries while they are made
-CELL = 2 * 4  # of floor and furniture: how much stands there
+CELL = 2 * 4  # of floor and furniture: how much stands there; a GPU counts it in two more such
 
 
 def bytes_of_view(content: Loaded, size: tuple[int, int], run: int, vertices: int) -> int:

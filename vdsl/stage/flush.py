@@ -7,6 +7,7 @@ hair. Nothing is ever raised: the whole stays as large as it is.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -25,10 +26,10 @@ _FLUSH = 0.00015  # metres that planes may be apart
 _ALIKE = 0.003  # between the normals of planes that are one
 _FAR = 0.1  # share of a distance that is told from that of another plane: 3 cm for normals' 0.003
 _SAME_PLACE = 1e-5  # metres
-#: Facets; what has more is a scan or a landscape, nearly flat and without a plane, and each of its facets
-#: would be compared with every other one.
-_MOST = 4000
-_MANY = 64  # pairs of triangles, from which on it is first asked which of them lie near
+#: Facets of a solid, and faces of a facet, that are still compared with others; and how many pairs are looked
+#: at in all.
+_MOST, _PAIRS = 4000, 1_000_000
+_FEW, _BLOCK = 64, 65536  # pairs of triangles that are looked at one by one; that are compared at once
 _THINNER = 0.2  # share of a solid's thickness that it may be sunk by
 
 Floats = NDArray[np.float64]
@@ -38,21 +39,23 @@ Floats = NDArray[np.float64]
 class _Facets:
     """Faces of one solid in one plane. face: int [N], which facet each face of ``corners`` is of;
 
-    corners: float64 [N, 3, 3]; solid: int [K], which mesh; normal: float64 [K, 3]; low, high: float64 [K, 3];
-    look: int [K], the same where no difference would be seen
+    corners: float64 [N, 3, 3]; solid: int [K], which mesh; normal: float64 [K, 3] and away: float64 [K], the
+    plane; low, high: float64 [K, 3]; look: int [K], the same where no difference would be seen
     """
 
     face: NDArray[np.int64]
     corners: Floats
     solid: NDArray[np.int64]
     normal: Floats
+    away: Floats
     low: Floats
     high: Floats
     look: NDArray[np.int64]
 
 
-def told_apart(meshes: list[Mesh]) -> list[Mesh]:
-    """The meshes, what is flush with a later one sunk below it; the others are passed on as they are."""
+def told_apart(meshes: list[Mesh], hair: float = HAIR) -> list[Mesh]:
+    """The meshes, what is flush with a later one sunk below it by ``hair`` metres or, where it is thin, less;
+    the others are passed on as they are."""
     if len(meshes) < 2:
         return meshes
     facets, of_face = _facets(meshes)
@@ -64,7 +67,7 @@ def told_apart(meshes: list[Mesh]) -> list[Mesh]:
         depth[below] = max(depth[below], depth[above] + 1)
     out = list(meshes)
     for k in np.unique(facets.solid[depth > 0]).tolist():
-        out[k] = _sunk(meshes[k], of_face[k], facets, depth, k)
+        out[k] = _sunk(meshes[k], of_face[k], facets, depth, k, hair)
     return out
 
 
@@ -93,22 +96,21 @@ def _facets(meshes: list[Mesh]) -> tuple[_Facets, list[NDArray[np.int64]]]:
             ),
         ]
     )
-    look = unique_rows(looks[where[first]])[2]
+    of_look = unique_rows(looks[where])[2]
+    look, mixed = of_look[first], np.zeros(count, bool)
+    mixed[facet[of_look != look[facet]]] = True
+    look = np.where(mixed, -1 - np.arange(count), look)  # of several looks: like no other one
     of_face = np.full(len(every), -1)
     of_face[where] = facet
     ends = np.cumsum([len(c) for c in corners])[:-1]
-    facets = _Facets(facet, every[real], solid[where[first]], normal[where[first]], low, high, look)
+    chosen = where[first]
+    facets = _Facets(facet, every[real], solid[chosen], normal[chosen], away[chosen], low, high, look)
     return facets, np.split(of_face, ends)
 
 
 def _flush_pairs(facets: _Facets) -> NDArray[np.int64]:
     """Pairs [P, 2] of facets of different meshes that are flush somewhere, the earlier mesh's first."""
-    few = np.flatnonzero(np.bincount(facets.solid)[facets.solid] <= _MOST)
-    if len(few) < 2:
-        return np.zeros((0, 2), np.int64)
-    away = (facets.normal * (facets.low + facets.high) / 2).sum(1)
-    places = np.concatenate([facets.normal, _FAR * away[:, None]], 1)[few]
-    near = few[cKDTree(places).query_pairs(_ALIKE, output_type="ndarray")]
+    near = _of_one_plane(facets)
     low, high = np.maximum(*facets.low[near.T]), np.minimum(*facets.high[near.T])
     common = np.sort(high - low, axis=1)  # of flush ones the least is 0, and the others are sides
     a, b = near.T
@@ -129,6 +131,22 @@ def _flush_pairs(facets: _Facets) -> NDArray[np.int64]:
     return near[np.array(flush, bool)] if len(near) else near
 
 
+def _of_one_plane(facets: _Facets) -> NDArray[np.int64]:
+    """Pairs [P, 2] of facets whose planes are about one. Left out are solids of many facets and facets of
+    many faces, the sooner the more pairs there would be: scans and landscapes, nearly flat everywhere."""
+    sizes = np.bincount(facets.solid)[facets.solid]
+    sizes = np.maximum(sizes, np.bincount(facets.face, minlength=len(facets.solid)))
+    places = np.concatenate([facets.normal, _FAR * facets.away[:, None]], 1)
+    for most in (_MOST, _MOST // 8, _MOST // 64):
+        few = np.flatnonzero(sizes <= most)
+        if not len(few):
+            break
+        tree = cKDTree(places[few])
+        if tree.count_neighbors(tree, _ALIKE) - len(few) <= 2 * _PAIRS:
+            return few[tree.query_pairs(_ALIKE, output_type="ndarray")]
+    return np.zeros((0, 2), np.int64)
+
+
 def _are_flush(ours: Floats, theirs: Floats, normal: Floats, other: Floats) -> bool:
     """Whether triangles [N, 3, 3] and [M, 3, 3] of two planes lie in each other somewhere. normal, other: of
     the planes, which are about the same. In plain numbers: mostly they are a few triangles."""
@@ -136,22 +154,28 @@ def _are_flush(ours: Floats, theirs: Floats, normal: Floats, other: Floats) -> b
     u, v = ((1, 2), (2, 0), (0, 1))[axis] if normal[axis] > 0 else ((2, 1), (0, 2), (1, 0))[axis]
     flat = [u, v]
     least = _LEAST * abs(float(normal[axis]))  # as it looks along that axis
-    if len(ours) * len(theirs) > _MANY:
-        low = np.maximum(ours[:, None, :, flat].min(2), theirs[None, :, :, flat].min(2))
-        high = np.minimum(ours[:, None, :, flat].max(2), theirs[None, :, :, flat].max(2))
-        pairs = np.argwhere((high - low > 0).all(-1)).tolist()
-    else:
-        pairs = [[i, j] for i in range(len(ours)) for j in range(len(theirs))]
     a, b = ours[..., flat].tolist(), theirs[..., flat].tolist()
-    for i, j in pairs:
+    for i, j in _overlapping(ours[..., flat], theirs[..., flat]):
         area, x, y = _common(a[i], b[j])
         if area > least:
-            up = _height(x, y, ours[i, 0], normal, (u, v, axis)) - _height(
-                x, y, theirs[j, 0], other, (u, v, axis)
-            )
+            axes = (u, v, axis)
+            up = _height(x, y, ours[i, 0], normal, axes) - _height(x, y, theirs[j, 0], other, axes)
             if abs(up * float(normal[axis])) < _FLUSH:
                 return True
     return False
+
+
+def _overlapping(ours: Floats, theirs: Floats) -> Iterator[tuple[int, int]]:
+    """Pairs of triangles [N, 3, 2] and [M, 3, 2] that may overlap, a block of them at a time."""
+    block = max(_BLOCK // len(theirs), 1)
+    for begin in range(0, len(ours), block):
+        some = ours[begin : begin + block]
+        if len(some) * len(theirs) <= _FEW:
+            yield from ((begin + i, j) for i in range(len(some)) for j in range(len(theirs)))
+            continue
+        low = np.maximum(some.min(1)[:, None], theirs.min(1)[None])
+        high = np.minimum(some.max(1)[:, None], theirs.max(1)[None])
+        yield from ((begin + i, j) for i, j in np.argwhere((high - low > 0).all(-1)).tolist())
 
 
 def _height(x: float, y: float, point: Floats, normal: Floats, axes: tuple[int, int, int]) -> float:
@@ -186,7 +210,12 @@ def _common(a: list[list[float]], b: list[list[float]]) -> tuple[float, float, f
 
 
 def _sunk(
-    mesh: Mesh, of_face: NDArray[np.int64], facets: _Facets, depth: NDArray[np.int64], solid: int
+    mesh: Mesh,
+    of_face: NDArray[np.int64],
+    facets: _Facets,
+    depth: NDArray[np.int64],
+    solid: int,
+    hair: float,
 ) -> Mesh:
     """The mesh with its facets as many hairs deep as they lie under others, vertices that meet together."""
     place = unique_rows(np.round(mesh.vertices / _SAME_PLACE).astype(np.int64))[2]
@@ -195,9 +224,12 @@ def _sunk(
     for facet in np.nonzero((facets.solid == solid) & (depth > 0))[0].tolist():
         normal = facets.normal[facet]
         thick = float(np.abs(normal) @ size)
-        by = min(HAIR * depth[facet], _THINNER * thick) if thick > _SAME_PLACE else HAIR * depth[facet]
+        each = min(hair, _THINNER * thick / int(depth.max())) if thick > _SAME_PLACE else hair
+        by = each * int(depth[facet])
         there = np.unique(place[mesh.faces[of_face == facet]])
-        # what was sunk with another facet of about this normal is that deep already
-        by_place[there] -= np.maximum(by + by_place[there] @ normal, 0.0)[:, None] * normal
+        # what was sunk with another facet of about this normal is that deep already; the back of a sheet of
+        # no thickness, that went down with its front, is left there
+        raised = by_place[there] @ normal
+        by_place[there] -= np.where(raised > 0, 0.0, np.maximum(by + raised, 0.0))[:, None] * normal
     vertices = (mesh.vertices + by_place[place]).astype(np.float32)
     return replace(mesh, vertices=vertices)

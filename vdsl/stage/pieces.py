@@ -16,8 +16,11 @@ from runtime.mesh import Mesh, join
 from runtime.world import Hinge, Level, Rect, Solids, Spot, Stairs, WorldObject
 
 from ..lang.definitions.prop import PropSpot
-from .flush import told_apart
+from .flush import HAIR, told_apart
 
+#: Metres by which a thing is sunk that is flush with a later one: other than by which parts of props are, so
+#: that both do not come to lie in one plane.
+_HAIR = 0.7 * HAIR
 Matrix = NDArray[np.float64]
 Vector = tuple[float, float, float]
 
@@ -94,7 +97,7 @@ class Pieces:
         """All that never moves as one mesh, with the owner and the wall of each face, int32 [F]."""
         none = np.zeros(0, np.int32)
         return (
-            join(told_apart(self._meshes)),
+            join(told_apart(self._meshes, _HAIR)),
             np.concatenate([*self._owners, none]),
             np.concatenate([*self._walls, none]),
         )

@@ -98,7 +98,7 @@ def crowded_with_detail() -> Case:
 
 
 def test_opengl_draws_the_level_of_detail_that_we_draw() -> None:
-    given, size = crowded_with_detail(), (320, 180)
+    given, size = crowded_with_detail(), (800, 450)
     drawer = Renderer("cpu", STYLES["plain"])
     drawer.load(given.scene)
     assert len(np.unique(drawer.levels(given.palettes, given.views, size))) > 2

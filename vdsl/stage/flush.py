@@ -17,8 +17,8 @@ from scipy.spatial import cKDTree
 from runtime.mesh import Mesh
 from runtime.rows import unique_rows
 
-#: Metres that a surface is sunk below the one over it: less than half a pixel wherever one looks, and several
-#: times what rounding comes to at the far end of a set.
+#: Metres that a surface is sunk below the one over it: less than a pixel but in the closest of close-ups, and
+#: several times what rounding comes to at the far end of a set.
 HAIR = 0.0004
 #: Square metres; what is common to two surfaces and smaller is no surface.
 _LEAST = 1e-5
@@ -37,9 +37,9 @@ Floats = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class _Facets:
-    """Faces of one solid in one plane. face: int [N], which facet each face of ``corners`` is of;
+    """Facets: faces of one solid in one plane.
 
-    corners: float64 [N, 3, 3]; solid: int [K], which mesh; normal: float64 [K, 3] and away: float64 [K], the
+    face: int [N], which facet each face of ``corners`` [N, 3, 3], float64, is of; solid: int [K], which mesh; normal: float64 [K, 3] and away: float64 [K], the
     plane; low, high: float64 [K, 3]; look: int [K], the same where no difference would be seen
     """
 

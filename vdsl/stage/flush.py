@@ -39,8 +39,9 @@ Floats = NDArray[np.float64]
 class _Facets:
     """Facets: faces of one solid in one plane.
 
-    face: int [N], which facet each face of ``corners`` [N, 3, 3], float64, is of; solid: int [K], which mesh; normal: float64 [K, 3] and away: float64 [K], the
-    plane; low, high: float64 [K, 3]; look: int [K], the same where no difference would be seen
+    face: int [N], which facet each face of ``corners`` is of; corners: float64 [N, 3, 3]
+    solid: int [K], which mesh; normal, away: float64 [K, 3] and [K], the plane; low, high: float64 [K, 3]
+    look: int [K], the same where no difference would be seen
     """
 
     face: NDArray[np.int64]

@@ -87,6 +87,43 @@ def test_an_outline_moves_by_parts_of_a_pixel(thing: Mesh, axis: int) -> None:
     assert moved.max() < 2.0 * moved.mean()
 
 
+def test_an_outline_is_as_sharp_wherever_it_passes_between_pixels() -> None:
+    """Else a line would pulse as the camera turns."""
+    drawer = Renderer("cpu", BARE)
+    behind, thing = box((-9, 5, -9), (9, 6, 9), (0.01, 0.01, 0.01)), box((-0.5, 0, -0.5), (0.5, 0.4, 0.5))
+    drawer.load(scene([behind, thing], [], light=EVEN))
+    lines = np.array([covered(drawer, shift, 0, 96) for shift in np.linspace(0, 0.08, 13)])
+    sharp = (np.diff(lines, axis=1) ** 2).sum(axis=1)
+    assert sharp.max() < 1.35 * sharp.min()  # twice, where a pixel gets of its neighbour what is covered
+
+
+@pytest.mark.parametrize("axis", [0, 1])
+def test_where_things_run_into_each_other_moves_by_parts_of_a_pixel(axis: int) -> None:
+    """A dark plate that comes out of a bright one, of which no edge is anywhere near."""
+    drawer = Renderer("cpu", BARE)
+    bright, dark = (box((-9, 0, -9), (9, 1, 9), (c, c, c)) for c in (0.9, 0.02))
+    turn = np.radians(6.0)
+    across, up = (0, 2)[axis], 1
+    tilted = dark.vertices.copy()
+    tilted[:, across] = np.cos(turn) * dark.vertices[:, across] - np.sin(turn) * dark.vertices[:, up]
+    tilted[:, up] = np.sin(turn) * dark.vertices[:, across] + np.cos(turn) * dark.vertices[:, up]
+    drawer.load(scene([bright, replace(dark, vertices=tilted)], [], light=EVEN))
+    side, places = 96, []
+    for shift in np.linspace(0.02, 0.1, 13):
+        at = [0.0, -4.0, 0.0]
+        at[across] = shift
+        target = (at[0], 0.0, at[2])
+        color = drawer.render(
+            still(1), looking([(at[0], at[1], at[2])], [target], sensor=(36.0, 36.0)), (side, side)
+        )
+        line = color.color[0, side // 2, :, 1] if axis == 0 else color.color[0, :, side // 2, 1]
+        light = to_linear(line / 255.0)
+        places.append(float((light - light.min()).sum() / np.ptp(light)))
+    moved = np.abs(np.diff(places))
+    assert moved.min() > 0.5 * moved.mean()
+    assert moved.max() < 1.5 * moved.mean()
+
+
 @pytest.fixture
 def by_both(monkeypatch: pytest.MonkeyPatch) -> list[tuple[NDArray[Any], NDArray[Any]]]:
     """What smoothing by runs made of each picture, and what it makes of it pixel by pixel."""

@@ -39,6 +39,7 @@ OUTLINE, BEND = 2, 1
 FAR = 12  # triangles after which an end is no longer looked for
 REACH = 3  # pixels from which an edge is asked for
 UNKNOWN, OUTLINED, STEPS = 127, 128, 124  # of :func:`coded`
+SLACK = 0.1  # pixels that two triangles may run into each other outside of either
 FAINT = 12  # steps of luma that nobody sees
 MOST = 0.95  # of a pixel that may come from others
 
@@ -128,6 +129,42 @@ def ended_at(
 
 
 @ti.func
+def run_into(
+    t,
+    u,
+    m,
+    eye,
+    ray,
+    step,
+    beside,
+    vertices: ti.template(),
+    position: ti.template(),
+    faces: ti.template(),
+    counts,
+):
+    """After how many steps from a ray triangle ``t`` goes below triangle ``u``, which is seen a step away.
+
+    NEVER if it does not, or does so rather along these steps than across them. Of the set's, large and cut
+    in two as they are, the planes are asked alone.
+    """
+    p, q, r = corners(t, m, eye, vertices, position, faces, counts)
+    plane = (q - p).cross(r - p)
+    apart = plane / plane.dot(p)  # times a ray: 1/z
+    until, _edge, _over, _facing = left_at(p, q, r, ray, step)
+    p, q, r = corners(u, m, eye, vertices, position, faces, counts)
+    plane = (q - p).cross(r - p)
+    apart -= plane / plane.dot(p)
+    since, _edge2, _over2, _facing2 = left_at(p, q, r, ray + step, step * -1.0)
+    before, change = apart.dot(ray), apart.dot(step)
+    out = NEVER
+    if before > 0 and before + change < 0 and ti.abs(change) >= ti.abs(apart.dot(beside)):
+        met = -before / change
+        if (t < counts[0] or until > met - SLACK) and (u < counts[0] or since > 1.0 - met - SLACK):
+            out = met
+    return out
+
+
+@ti.func
 def border(behind, at, to, beyond, edge: ti.template(), vis: ti.template()):
     """OUTLINE where a surface ends between two pixels, BEND where it bends, else 0.
 
@@ -198,6 +235,11 @@ def passing(
             out = here - 0.5
     elif there < 1.0 and there_across:
         out = 0.5 - there
+    elif here >= 1.0 and there >= 1.0 and 0 <= ti.min(t, u) < counts[0]:
+        # nothing ends: they run into each other. Within a body they are too small to tell
+        met = run_into(t, u, m, eye, ray, step, beside, vertices, position, faces, counts)
+        if met <= 1.0:
+            out = met - 0.5
     return out
 
 
@@ -334,6 +376,17 @@ def find_edges(
 
 
 @ti.func
+def weights(code):
+    """What a pixel gets of the one before it and of the one after it, to be moved as far as an edge is.
+
+    The quadratic B-spline: wherever the edge passes, it blurs alike. What lies between two pixels' colours
+    blurs by the more the further they are moved, and a line would pulse as it goes along the pixels.
+    """
+    s = ti.cast((code & UNKNOWN) - 1, ti.f32) * (1.0 / STEPS)
+    return 0.5 * s * s, 0.5 * (1.0 - s) * (1.0 - s)
+
+
+@ti.func
 def moved(at, stride, bits, before, after, reach, found: ti.template()):
     """What a pixel gets of the one before it on a line and of the one after it, and whether edges are known.
 
@@ -356,16 +409,16 @@ def moved(at, stride, bits, before, after, reach, found: ti.template()):
         alone = further < reach and kind_of(left) != kind_of(right)
         if most != 0 and kind_of(left) == most and left & UNKNOWN != UNKNOWN:
             known = True
-            s = ti.cast((left & UNKNOWN) - 1, ti.f32) * (1.0 / STEPS) - 0.5
-            from_before = greater(s, 0.0)
+            near, far = weights(left)
+            from_before = near
             if alone:
-                from_after = greater(-s, 0.0)
+                from_after = far
         if most != 0 and kind_of(right) == most and right & UNKNOWN != UNKNOWN:
             known = True
-            s = ti.cast((right & UNKNOWN) - 1, ti.f32) * (1.0 / STEPS) - 0.5
-            from_after = greater(from_after, -s)
+            far, near = weights(right)
+            from_after = greater(from_after, near)
             if alone:
-                from_before = greater(from_before, s)
+                from_before = greater(from_before, far)
     return from_before, from_after, known
 
 

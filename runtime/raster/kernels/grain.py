@@ -39,13 +39,13 @@ def noise_along(
     """:func:`.pattern.value_noise` at sixteen places along a line; right in the lanes first..last."""
     wide[at], wide[at + 1] = x, y
     here = at * RUN
-    apart = 1
-    if last - first == RUN - 1:
-        change = ti.abs(number[here + last] - number[here])
-        change += ti.abs(number[here + RUN + last] - number[here + RUN])
-        if change < COARSE:
-            apart = 15
-        elif change < 3 * COARSE:
+    apart, span = 1, last - first
+    change = ti.abs(number[here + last] - number[here + first])
+    change += ti.abs(number[here + RUN + last] - number[here + RUN + first])
+    if span > 1 and change < COARSE:
+        apart = span
+    elif span == RUN - 1:
+        if change < 3 * COARSE:
             apart = 5
         elif change < 5 * COARSE:
             apart = 3
@@ -55,10 +55,10 @@ def noise_along(
         k += apart
     out = wide[at + 2]
     if apart > 1:
-        share = laned() * (1.0 / ti.cast(apart, ti.f32))
-        k = here + 2 * RUN
+        share = (laned() - ti.cast(first, ti.f32)) * (1.0 / ti.cast(apart, ti.f32))
+        k = here + 2 * RUN + first
         out = share * 0.0 + number[k]
-        while k < here + 3 * RUN - 1:
+        while k < here + 2 * RUN + last:
             out += (number[k + apart] - number[k]) * ti.min(ti.max(share, 0.0), 1.0)
             share -= 1.0
             k += apart

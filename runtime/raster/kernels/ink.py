@@ -16,7 +16,7 @@ from . import crew
 from .borders import TOUCH, find_borders, quiet
 from .gather import fv, iv
 from .geometry import f1, f2, i1, nearness, u32s, u64s, vec3
-from .paint import INK, NOTHING, decode, encode, unpack_normal
+from .paint import INK, NOTHING, decode, encode, unpack_direction
 from .paint import RUN as BLOCK
 
 i32s = ti.types.ndarray(ti.i32, ndim=1)
@@ -24,14 +24,22 @@ EVERY = (1 << BLOCK) - 1
 
 
 @ti.func
-def bend(e, f):
-    """Cosine between two packed normals, 1 when they are obviously close."""
-    out = 1.0
-    if (e ^ f) & 0xFFFF:
-        ex, ey = ti.cast((e >> 8) & 0xFF, ti.i32), ti.cast(e & 0xFF, ti.i32)
-        fx, fy = ti.cast((f >> 8) & 0xFF, ti.i32), ti.cast(f & 0xFF, ti.i32)
-        if ti.abs(ex - fx) + ti.abs(ey - fy) > 30:
-            out = unpack_normal(e).dot(unpack_normal(f))
+def level(e, f):
+    """Whether two packed normals are obviously close."""
+    x = ti.cast((e >> 8) & 0xFF, ti.i32) - ti.cast((f >> 8) & 0xFF, ti.i32)
+    y = ti.cast(e & 0xFF, ti.i32) - ti.cast(f & 0xFF, ti.i32)
+    return ti.abs(x) + ti.abs(y) <= 30
+
+
+@ti.func
+def bends(e, f, cosine):
+    """Whether the angle between two packed normals is wider than that of a cosine above 0."""
+    out = False
+    if not level(e, f):
+        n, m = unpack_direction(e), unpack_direction(f)
+        along = n.dot(m)
+        # compared squared, as normals of any length do
+        out = along <= 0.0 or along * along < cosine * cosine * n.norm_sqr() * m.norm_sqr()
     return out
 
 
@@ -45,9 +53,9 @@ def line_weight(e, f, w, w_f, w_back, first_moving, owner: ti.template()):
     s = ti.cast(e >> 16, ti.i32)
     s_f = ti.cast(f >> 16, ti.i32)
     moves = s >= first_moving
-    # a gap in metres, where this surface would be if it went on
-    gap = (2.0 * w - w_back - w_f) / (w * w)
-    allowed = 0.035 + 0.012 / w
+    # a gap in metres, where this surface would be if it went on, both times w squared
+    gap = 2.0 * w - w_back - w_f
+    allowed = (0.035 * w + 0.012) * w
     if s != s_f:
         if f == ti.u32(NOTHING):
             out = 1.0 if moves else 0.6
@@ -62,14 +70,12 @@ def line_weight(e, f, w, w_f, w_back, first_moving, owner: ti.template()):
                 else:
                     out = 0.35 if touching else 0.5
                 # one plane, two faces in it (boxes that overlap): which is seen is chance, so no line
-                if not moves and touching and ti.abs(gap) < 0.003 and bend(e, f) > 0.98:
+                if not moves and touching and ti.abs(gap) < 0.003 * w * w and not bends(e, f, 0.98):
                     out = 0.0
     elif gap > allowed and w > w_f:
         out = 0.8 if moves else 0.45
-    else:
-        turn = bend(e, f)
-        if turn < (0.35 if moves else 0.75) and gap > -allowed:
-            out = 0.45 if moves else 0.3
+    elif gap > -allowed and bends(e, f, 0.35 if moves else 0.75):
+        out = 0.45 if moves else 0.3
     return out
 
 
@@ -103,14 +109,6 @@ def even(x, y, at, width, height, moves, edge: ti.template(), vis: ti.template()
             if out and other != 0:
                 out = level(e, a) and level(e, b) and level(e, c) and level(e, d)
     return out
-
-
-@ti.func
-def level(e, f):
-    """Whether two packed normals are obviously close."""
-    x = ti.cast((e >> 8) & 0xFF, ti.i32) - ti.cast((f >> 8) & 0xFF, ti.i32)
-    y = ti.cast(e & 0xFF, ti.i32) - ti.cast(f & 0xFF, ti.i32)
-    return ti.abs(x) + ti.abs(y) <= 30
 
 
 @lru_cache(maxsize=8)

@@ -39,7 +39,8 @@ def pack_normal(n):
 
 
 @ti.func
-def unpack_normal(bits):
+def unpack_direction(bits):
+    """A packed normal, of whatever length."""
     x = ti.cast((bits >> 8) & 0xFF, ti.f32) * (2.0 / 254.0) - 1.0
     y = ti.cast(bits & 0xFF, ti.f32) * (2.0 / 254.0) - 1.0
     z = 1.0 - ti.abs(x) - ti.abs(y)
@@ -47,7 +48,12 @@ def unpack_normal(bits):
         ox = (1.0 - ti.abs(y)) * (1.0 if x >= 0 else -1.0)
         y = (1.0 - ti.abs(x)) * (1.0 if y >= 0 else -1.0)
         x = ox
-    return vec3(x, y, z).normalized()
+    return vec3(x, y, z)
+
+
+@ti.func
+def unpack_normal(bits):
+    return unpack_direction(bits).normalized()
 
 
 @ti.func

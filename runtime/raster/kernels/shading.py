@@ -208,10 +208,11 @@ def shading_kernels(style: Style) -> SimpleNamespace:
                     at = line * width + x
                     t = triangle(vis, at)
                     if x % RUN == 0:
-                        mixed = ti.u32(0)
-                        for i in range(at + 1, at + ti.min(RUN, width - x)):
-                            mixed |= ti.cast(vis[i], ti.u32) ^ ti.cast(t + 1, ti.u32)
-                        whole = mixed == 0
+                        # the last one first: it is another's in most runs of several triangles
+                        i = at + ti.min(RUN, width - x) - 1
+                        while i > at and triangle(vis, i) == t:
+                            i -= 1
+                        whole = i == at
                         value = 0
                         if whole and t < static_faces:
                             value = t + 1 if t >= 0 else -1

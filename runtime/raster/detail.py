@@ -31,7 +31,7 @@ FINER = 700.0  # pixels a metre from which on the finer level is drawn
 SMALL, IN_SMALL = 400, (1400.0, 400.0, 250.0)
 FINEST, OWN = 0, 1  # the finer level, and the mesh as it is; coarser ones follow
 COUNT = OWN + 1 + len(LEVELS)
-SHELL = 400  # faces; shells of fewer keep them
+SHELL = 250  # faces; shells of fewer, as eyes and teeth are, keep them
 DETAILED = 2000  # faces; what has fewer is drawn as it is
 #: Metres by which the inside of a look lies above its border while it is simplified.
 LIFT = 0.04

@@ -15,7 +15,8 @@ from .device import Backend
 from .loaded import Loaded
 from .shadows import texels_of
 
-USUAL = 640 << 20  # bytes: twelve views of 720p of a furnished room; more draw no faster on a processor
+HOST = 1 << 30  # bytes: sixty-four small views of a furnished room; more draw no faster on a processor
+USUAL = 640 << 20  # bytes, of a GPU that does not say what it has
 MOST = 4 << 30  # bytes, of a GPU with memory to spare
 HOST_SHARE, GPU_SHARE = 4, 2  # a quarter of what a machine has free, and half of what a GPU has
 
@@ -49,7 +50,7 @@ def bytes_of_moment(content: Loaded, height: int, vertices: int) -> int:
 def budget(backend: Backend) -> int:
     """Bytes that the views drawn at a time may take on a device, by what it has free now."""
     if backend.on_host:
-        return min(USUAL, int(psutil.virtual_memory().available) // HOST_SHARE)
+        return min(HOST, int(psutil.virtual_memory().available) // HOST_SHARE)
     free = _free_on_nvidia() if backend.name == "cuda" else None
     return USUAL if free is None else min(MOST, free // GPU_SHARE)
 

@@ -13,7 +13,7 @@ from raster_scenes import looking, room, still
 
 from runtime.raster import memory
 from runtime.raster.device import Backend
-from runtime.raster.memory import USUAL, budget, bytes_of_view
+from runtime.raster.memory import HOST, USUAL, budget, bytes_of_view
 from runtime.raster.renderer import Renderer, skinned
 
 SIZE = (64, 36)
@@ -94,7 +94,7 @@ def test_a_processor_shares_what_is_free(monkeypatch: pytest.MonkeyPatch) -> Non
     monkeypatch.setattr(psutil, "virtual_memory", lambda: free)
     assert budget(Backend("cpu", 2)) == 100 << 20
     free.available = 64 << 30
-    assert budget(Backend("cpu", 2)) == USUAL
+    assert budget(Backend("cpu", 2)) == HOST
 
 
 class Driver:

@@ -217,20 +217,26 @@ def shading_kernels(style: Style) -> SimpleNamespace:
                         if whole and t < static_faces:
                             value = t + 1 if t >= 0 else -1
                         solid[line * runs + x // RUN] = value
+                    if sparse == 1 and (todo >> (x % RUN)) & 1 == 0:
+                        # on to the next pixel that is left
+                        joined = False
+                        further = todo >> (x % RUN)
+                        x += ti.math.popcnt((further & -further) - 1) if further != 0 else RUN - x % RUN
+                        continue
                     stop = x + 1
                     limit = ti.min(width, (x // stretch + 1) * stretch)
+                    if sparse == 1:
+                        limit = ti.min(limit, x // RUN * RUN + 32 - ti.math.clz(todo))
                     if whole:
                         stop = limit
                     else:
                         while stop < limit and triangle(vis, at + stop - x) == t:
                             stop += 1
-                    bits = ((1 << (stop - x)) - 1) << (x % RUN)
-                    if sparse == 1 and todo & bits != 0:
+                    if sparse == 1:
                         # written out: one thread has the row, and |= would be an atomic operation
+                        bits = ((1 << (stop - x)) - 1) << (x % RUN)
                         left[line * runs + x // RUN] = left[line * runs + x // RUN] | bits
-                    if todo & bits == 0:
-                        joined = False
-                    elif t < 0:
+                    if t < 0:
                         last = -1
                         joined = False
                         near_end = backdrop(first + step * ti.cast(x, ti.f32), horizon, zenith, film)

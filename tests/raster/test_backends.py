@@ -60,9 +60,11 @@ def by_lamplight() -> tuple[RenderScene, Views]:
 
 def draw_all(device: str, out: str) -> None:
     """In a process of its own: draw every scene at every size into a file of arrays."""
+    from runtime.raster import passes
     from runtime.raster.device import DeviceError
     from runtime.raster.renderer import Renderer
 
+    fine = passes.FINE
     try:
         drawer = Renderer(device, Style())
     except DeviceError as error:
@@ -75,6 +77,7 @@ def draw_all(device: str, out: str) -> None:
         palettes[1, :, 1, 3] = 0.2
         drawer.load(content)
         for size in SMALL if make is by_lamplight else SIZES:
+            passes.FINE = 0 if size == SIZES[0] else fine  # edges to a part of a pixel, as in large pictures
             frames = drawer.render(palettes, views, size, ids=True)
             kept[f"{make.__name__} {size} color"] = frames.color
             kept[f"{make.__name__} {size} ids"] = frames.ids

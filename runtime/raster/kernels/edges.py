@@ -39,7 +39,6 @@ OUTLINE, BEND = 2, 1
 FAR = 12  # triangles after which an end is no longer looked for
 REACH = 3  # pixels from which an edge is asked for
 UNKNOWN, OUTLINED, STEPS = 127, 128, 124  # of :func:`coded`
-SLACK = 0.1  # pixels that two triangles may run into each other outside of either
 FAINT = 12  # steps of luma that nobody sees
 MOST = 0.95  # of a pixel that may come from others
 
@@ -144,23 +143,19 @@ def run_into(
 ):
     """After how many steps from a ray triangle ``t`` goes below triangle ``u``, which is seen a step away.
 
-    NEVER if it does not, or does so rather along these steps than across them. Of the set's, large and cut
-    in two as they are, the planes are asked alone.
+    NEVER if it does not, or does so rather along these steps than across them. Their planes are asked: within
+    a step what they belong to bends little.
     """
     p, q, r = corners(t, m, eye, vertices, position, faces, counts)
     plane = (q - p).cross(r - p)
     apart = plane / plane.dot(p)  # times a ray: 1/z
-    until, _edge, _over, _facing = left_at(p, q, r, ray, step)
     p, q, r = corners(u, m, eye, vertices, position, faces, counts)
     plane = (q - p).cross(r - p)
     apart -= plane / plane.dot(p)
-    since, _edge2, _over2, _facing2 = left_at(p, q, r, ray + step, step * -1.0)
     before, change = apart.dot(ray), apart.dot(step)
     out = NEVER
     if before > 0 and before + change < 0 and ti.abs(change) >= ti.abs(apart.dot(beside)):
-        met = -before / change
-        if (t < counts[0] or until > met - SLACK) and (u < counts[0] or since > 1.0 - met - SLACK):
-            out = met
+        out = -before / change
     return out
 
 

@@ -149,9 +149,10 @@ def cast(
             for i in range(size * size):
                 depth[base + i] = NOWHERE
             g = group[m]
+            low, high = ti.Vector([size, size]), ti.Vector([0, 0])
             for i in range(runs[g, 0], runs[g, 2]):
                 closed = i < runs[g, 1]
-                draw(
+                begin, end = draw(
                     position,
                     basis,
                     entry,
@@ -167,7 +168,8 @@ def cast(
                     closed,
                     m,
                 )
-            summarise(depth, size, spare, coarse, m)
+                low, high = ti.min(low, begin), ti.max(high, end)
+            summarise(depth, size, spare, coarse, m, low, high)
 
 
 @ti.kernel
@@ -294,7 +296,8 @@ def draw(
     m,
 ):
     """Draw triangle ``t`` into map ``m`` if it is of it; what faces away from the light only if it is of no
-    closed shell."""
+    closed shell. Returns the texels it may be in: the first, and the one after the last, across and along."""
+    low, high = ti.Vector([size, size]), ti.Vector([0, 0])
     first = faces[t, 0] - offset
     if member[m, entry[first]] != 0:
         a = on_map(position, source[m], first, basis, frame, m)
@@ -303,18 +306,33 @@ def draw(
         towards = (b.x - a.x) * (c.y - a.y) - (c.x - a.x) * (b.y - a.y)
         if towards > 0 or not closed:
             stamp(depth, alone, m * size * size, size, a, b, c)
+            least, most = ti.min(a, b, c), ti.max(a, b, c)
+            for k in ti.static(range(2)):
+                low[k] = ti.cast(bounded(least[k] - 1.0, 0.0, ti.cast(size, ti.f32)), ti.i32)
+                high[k] = ti.cast(bounded(most[k] + 1.0, 0.0, ti.cast(size, ti.f32)), ti.i32)
+    return low, high
 
 
 @ti.func
-def summarise(depth: ti.template(), size, spare: ti.template(), coarse: ti.template(), m):
+def summarise(depth: ti.template(), size, spare: ti.template(), coarse: ti.template(), m, low, high):
     """The greatest and the least height around each fine block of a map, and the greatest around coarse
-    ones."""
-    for i in range((size // FINE) * (size // FINE)):
-        within_fine(depth, size, spare, m, i)
-    for i in range((size // FINE) * (size // FINE)):
-        around_fine(size, spare, coarse, m, i)
-    for i in range((size // BLOCK) * (size // BLOCK)):
-        around_coarse(size, coarse, m, i)
+    ones. low, high: between which texels anything was drawn"""
+    blocks, wide, begin = size // FINE, size // BLOCK, m * coarse_size(size)
+    for i in range(begin, begin + coarse_size(size)):
+        coarse[i] = NOWHERE
+    for i in range(begin, begin + 2 * blocks * blocks):
+        spare[i] = NOWHERE
+    x0, y0 = low.x // FINE, low.y // FINE
+    x1, y1 = ti.min(blocks, high.x // FINE + 1), ti.min(blocks, high.y // FINE + 1)
+    for j in range(y0, y1):
+        for i in range(x0, x1):
+            within_fine(depth, size, spare, m, j * blocks + i)
+    for j in range(ti.max(0, y0 - 1), ti.min(blocks, y1 + 1)):
+        for i in range(ti.max(0, x0 - 1), ti.min(blocks, x1 + 1)):
+            around_fine(size, spare, coarse, m, j * blocks + i)
+    for j in range(ti.max(0, y0 // 2 - 2), ti.min(wide, y1 // 2 + 2)):
+        for i in range(ti.max(0, x0 // 2 - 2), ti.min(wide, x1 // 2 + 2)):
+            around_coarse(size, coarse, m, j * wide + i)
 
 
 @ti.func

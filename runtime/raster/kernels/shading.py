@@ -224,7 +224,7 @@ def shading_kernels(style: Style) -> SimpleNamespace:
                         x += ti.math.popcnt((further & -further) - 1) if further != 0 else RUN - x % RUN
                         continue
                     stop = x + 1
-                    limit = ti.min(width, (x // stretch + 1) * stretch)
+                    limit = ti.min(width, (x | (stretch - 1)) + 1)  # stretch: a power of two
                     if sparse == 1:
                         limit = ti.min(limit, x // RUN * RUN + 32 - ti.math.clz(todo))
                     if whole:

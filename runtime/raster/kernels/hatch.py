@@ -36,6 +36,16 @@ def pressed(dark, spacing):
 
 
 @ti.func
+def passed(x):
+    """How much of a pixel lies before an edge ``x`` pixels from its middle, by the quadratic B-spline: a box
+    leaves strokes to flicker as they go along the pixels."""
+    t = ti.min(ti.abs(x), 1.5)
+    rest = 1.5 - t
+    out = ti.select(t < 0.5, 0.5 + t * (0.75 - t * t * (1.0 / 3.0)), 1.0 - rest * rest * rest * (1.0 / 6.0))
+    return ti.select(x < 0.0, 1.0 - out, out)
+
+
+@ti.func
 def strokes(place, along, grow, spacing, half, lattice: ti.template()):
     """Coverage 0..1 of parallel strokes.
 
@@ -57,8 +67,7 @@ def strokes(place, along, grow, spacing, half, lattice: ti.template()):
     width = half * (0.55 + 0.75 * press)
     if odd == 1:
         width *= eased(finer, 0.25, 1.0)
-    thin = bounded(width * 2.0, 0.0, 1.0)  # thinner than a pixel: paler
-    return bounded(ti.max(width, 0.5) - away + 0.5, 0.0, 1.0) * thin * eased(press, 0.10, 0.2)
+    return (passed(width - away) - passed(-width - away)) * eased(press, 0.10, 0.2)
 
 
 @ti.func

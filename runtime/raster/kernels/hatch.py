@@ -17,6 +17,8 @@ from .pattern import value_noise
 
 SPACING = 0.0085  # of the picture's height
 FIRST, SECOND = (0.61, 0.45, 0.65), (-0.52, 0.66, 0.55)  # across the strokes of the two layers
+#: From one knot to the next of the spline that strokes are seen through: pixels, at most; of their spacing.
+SOFT, SOFTER = 1.25, 0.2
 LIGHTEST = (0.1, 0.26)  # darkness at which strokes begin, and have all of their ink
 DEEPER = 0.4  # how much lighter a set has to be to stay white where it is as gloomy as can be
 OPENER = 0.4  # and how much of their ink people lose there, so that they stand out
@@ -37,8 +39,8 @@ def pressed(dark, spacing):
 
 @ti.func
 def passed(x):
-    """How much of a pixel lies before an edge ``x`` pixels from its middle, by the quadratic B-spline: a box
-    leaves strokes to flicker as they go along the pixels."""
+    """How much of a pixel lies before an edge ``x`` knots from its middle, by the quadratic B-spline: seen
+    through a box, strokes flicker as they go along the pixels."""
     t = ti.min(ti.abs(x), 1.5)
     rest = 1.5 - t
     out = ti.select(t < 0.5, 0.5 + t * (0.75 - t * t * (1.0 / 3.0)), 1.0 - rest * rest * rest * (1.0 / 6.0))
@@ -67,7 +69,9 @@ def strokes(place, along, grow, spacing, half, lattice: ti.template()):
     width = half * (0.55 + 0.75 * press)
     if odd == 1:
         width *= eased(finer, 0.25, 1.0)
-    return (passed(width - away) - passed(-width - away)) * eased(press, 0.10, 0.2)
+    knots = 1.0 / ti.min(SOFT, SOFTER * spacing)
+    seen = passed((width - away) * knots) - passed((-width - away) * knots)
+    return seen * eased(press, 0.10, 0.2)
 
 
 @ti.func

@@ -15,7 +15,9 @@ from .device import Backend
 from .loaded import Loaded
 from .shadows import texels_of
 
-HOST = 1 << 30  # bytes: sixty-four small views of a furnished room; more draw no faster on a processor
+#: Bytes: sixty-four small views of a furnished room with as much again outside; more draw no faster on a
+#: processor. A good part is room for triangles that are not seen, and never written to.
+HOST = 3 << 29
 USUAL = 640 << 20  # bytes, of a GPU that does not say what it has
 MOST = 4 << 30  # bytes, of a GPU with memory to spare
 HOST_SHARE, GPU_SHARE = 4, 2  # a quarter of what a machine has free, and half of what a GPU has

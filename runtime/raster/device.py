@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import DTypeLike, NDArray
 from platformdirs import user_cache_path
 
-from .quick import quicken
+from .quick import importing, quicken
 
 ALIGNMENT = 64  # bytes
 DEVICES = ("auto", "cpu", "cuda", "vulkan")
@@ -115,7 +115,8 @@ def start(device: str = "auto") -> Backend:
         return backend
     os.environ.setdefault("ENABLE_TAICHI_HEADER_PRINT", "0")
     os.environ.setdefault("TI_LOG_LEVEL", "error")
-    import taichi as ti
+    with importing():
+        import taichi as ti
 
     quicken()
     threads = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1

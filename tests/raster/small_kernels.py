@@ -40,3 +40,36 @@ class Counter:
 def light_at(at: f2, frame: f2, size: ti.i32, depth: f1, coarse: f1, out: f1):
     for i in range(at.shape[0]):
         out[i] = lit(ti.Vector([at[i, 0], at[i, 1], at[i, 2]]), 0, frame, size, depth, coarse)
+
+
+@ti.func
+def halved(x):
+    return x / unheard_of  # noqa: F821
+
+
+@ti.kernel
+def lost(x: ti.f32) -> ti.f32:
+    return halved(halved(x))
+
+
+@ti.func
+def grown(x, by: ti.template()):
+    out = x
+    for k in ti.static(range(by)):
+        out += ti.static(k if by > 2 else 10)
+    return out
+
+
+@ti.kernel
+def grown_twice(x: ti.i32) -> ti.i32:
+    return grown(grown(x, 2), 4)
+
+
+@ti.kernel
+def highest() -> ti.u64:
+    return ti.u64(0xFFFFFFFFFFFFFFFF)
+
+
+@ti.kernel
+def beyond() -> ti.i32:
+    return 0x1FFFFFFFF

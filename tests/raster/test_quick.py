@@ -31,6 +31,37 @@ def test_an_error_in_a_kernel_names_its_place() -> None:
     assert "print(no_such_thing + 1)" in str(caught.value)
 
 
+def test_an_error_in_a_function_names_its_place_each_time() -> None:
+    """Trees are kept, and nothing is noted before something is wrong."""
+    start("cpu")
+    import taichi as ti
+    from small_kernels import __file__ as where
+    from small_kernels import lost
+
+    for _ in range(2):
+        with pytest.raises(ti.TaichiNameError, match="unheard_of") as caught:
+            lost(1.0)
+        assert f'File "{where}", line ' in str(caught.value)
+        assert "return x / unheard_of" in str(caught.value)
+
+
+def test_what_is_read_again_is_read_as_the_first_time() -> None:
+    start("cpu")
+    from small_kernels import grown_twice
+
+    assert grown_twice(1) == 1 + 20 + 6
+
+
+def test_whole_numbers_have_their_bounds() -> None:
+    start("cpu")
+    import taichi as ti
+    from small_kernels import beyond, highest
+
+    assert highest() == 2**64 - 1
+    with pytest.raises(ti.TaichiTypeError, match="exceeded the range"):
+        beyond()
+
+
 def test_garbage_waits_until_a_kernel_is_read_and_no_longer() -> None:
     start("cpu")
     import taichi as ti

@@ -3,7 +3,8 @@
 Taichi reads the source of every kernel anew in each process, even where the compiled kernel is kept, and
 spends most of that time on laying out source lines for error messages that nobody will see. Assumes Taichi
 1.7; where what is replaced is not there, everything stays as it is. Guarantees the same kernels: only the
-pictures of source lines in compile errors are plainer.
+pictures of source lines in compile errors are plainer, and what Taichi finds wrong after a kernel was read it
+tells without a place.
 """
 
 from __future__ import annotations
@@ -30,14 +31,16 @@ def importing() -> Iterator[None]:
     """Import Taichi within this: of each of its own kernels it asks ``inspect`` in which line it is defined,
     which asks all modules whether it is theirs."""
     asked = inspect.getframeinfo
-    inspect.getframeinfo = _line_of
+    inspect.getframeinfo = lambda frame, context=1: (
+        _line_of(frame) if hasattr(frame, "f_code") else asked(frame, context)
+    )
     try:
         yield
     finally:
         inspect.getframeinfo = asked
 
 
-def _line_of(frame: Any, context: int = 1) -> inspect.Traceback:
+def _line_of(frame: Any) -> inspect.Traceback:
     """``inspect.getframeinfo`` with a context of one line."""
     code = frame.f_code
     line = linecache.getline(code.co_filename, frame.f_lineno)
@@ -60,7 +63,9 @@ def quicken() -> None:
     fill = lru_cache(maxsize=None)(textwrap.fill)
     kernel_impl.textwrap = SimpleNamespace(fill=fill, dedent=textwrap.dedent)
     kernel_impl._inside_class = _inside_class
-    kernel_impl.ast = SimpleNamespace(**{**vars(ast), "parse": _parsed})
+    if hasattr(kernel_impl, "transform_tree"):
+        kernel_impl.ast = SimpleNamespace(**{**vars(ast), "parse": _parsed})
+        kernel_impl.transform_tree = _minded(kernel_impl.transform_tree)
     if all(hasattr(kernel_impl.Kernel, n) for n in ("ensure_compiled", "launch_kernel")):
         kernel_impl.Kernel.__call__ = remembering(kernel_impl.Kernel.__call__)
     if hasattr(impl.PyTaichi, "get_current_src_info"):
@@ -71,13 +76,32 @@ def quicken() -> None:
         expr.to_numpy_type = cache(expr.to_numpy_type)
 
 
+_being_read: set[int] = set()  # trees, by their address
+
+
+def _minded(read: Callable[..., Any]) -> Callable[..., Any]:
+    """``transform_tree``, during which its tree is no one else's."""
+
+    @wraps(read)
+    def called(tree: ast.Module, context: Any) -> Any:
+        _being_read.add(id(tree))
+        try:
+            return read(tree, context)
+        finally:
+            _being_read.discard(id(tree))
+
+    return called
+
+
 def _parsed(source: str) -> ast.Module:
-    """``ast.parse`` of a function, once for all places that it is called from.
+    """``ast.parse`` of a function, once for all places that it is called from, but within itself.
 
     What Taichi notes in a tree as it reads it, it notes anew the next time, but for two things: what a kernel
     takes it takes out of its tree, and of what a method was called it notes where it was one.
     """
     tree, arguments, attributes = _tree(source)
+    if id(tree) in _being_read:
+        return ast.parse(source)
     for function, given in zip(tree.body, arguments, strict=True):
         if isinstance(function, ast.FunctionDef):
             function.args.args = list(given)
@@ -155,10 +179,10 @@ def _undisturbed(build: Callable[..., Any]) -> Callable[..., Any]:
 def _straight(build: Callable[..., Any]) -> Callable[..., Any]:
     """``Builder.__call__`` without noting where each node stands before it is read; that is found out once
     something is wrong with it."""
-    ways: dict[tuple[Any, type], Any] = {}
+    ways: dict[tuple[type, type], Any] = {}
 
     def called(self: Any, context: Any, node: Any) -> Any:
-        kind = (self, node.__class__)
+        kind = (self.__class__, node.__class__)  # they are static methods
         if kind not in ways:
             ways[kind] = getattr(self, "build_" + node.__class__.__name__, None)
         way = ways[kind]

@@ -65,6 +65,19 @@ def grown_twice(x: ti.i32) -> ti.i32:
     return grown(grown(x, 2), 4)
 
 
+@ti.func
+def powers(x, n: ti.template()):
+    out = x
+    if ti.static(n > 0):
+        out = out + powers(x, n - 1) * x
+    return out
+
+
+@ti.kernel
+def polynomial(x: ti.i32) -> ti.i32:
+    return powers(x, 3)
+
+
 @ti.kernel
 def highest() -> ti.u64:
     return ti.u64(0xFFFFFFFFFFFFFFFF)

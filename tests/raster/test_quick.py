@@ -47,9 +47,10 @@ def test_an_error_in_a_function_names_its_place_each_time() -> None:
 
 def test_what_is_read_again_is_read_as_the_first_time() -> None:
     start("cpu")
-    from small_kernels import grown_twice
+    from small_kernels import grown_twice, polynomial
 
     assert grown_twice(1) == 1 + 20 + 6
+    assert polynomial(3) == 3 + 3 * (3 + 3 * (3 + 3 * 3))  # a function within itself
 
 
 def test_whole_numbers_have_their_bounds() -> None:

@@ -61,17 +61,21 @@ def strokes(place, along, grow, spacing, half, lattice: ti.template()):
     at = (
         place * 2.0 * octave + (value_noise(along * octave * 0.4, place * octave * 0.3, lattice) - 0.5) * 0.45
     )
-    line = ti.floor(at + 0.5)
-    odd = ti.cast(line, ti.i32) & 1
-    away = ti.abs(at - line) / (2.0 * octave * grow)
-    # a hand presses, and lifts the pen now and then
-    press = value_noise(along * octave * 0.22, line * 7.31, lattice)
-    width = half * (0.55 + 0.75 * press)
-    if odd == 1:
-        width *= eased(finer, 0.25, 1.0)
+    apart = 1.0 / (2.0 * octave * grow)  # pixels from one line to the next
     knots = 1.0 / ti.min(SOFT, SOFTER * spacing)
-    seen = passed((width - away) * knots) - passed((-width - away) * knots)
-    return seen * eased(press, 0.10, 0.2)
+    seen = 0.0
+    for k in range(2):  # the nearest even line, and the nearest of those that grow between these
+        grown = 1.0 if k == 0 else eased(finer, 0.25, 1.0)
+        if grown > 0.0:
+            other = ti.cast(k, ti.f32)
+            line = 2.0 * ti.floor((at - other) * 0.5 + 0.5) + other
+            away = ti.abs(at - line) * apart
+            # a hand presses, and lifts the pen now and then
+            press = value_noise(along * octave * 0.22, line * 7.31, lattice)
+            width = half * (0.55 + 0.75 * press) * grown
+            covered = passed((width - away) * knots) - passed((-width - away) * knots)
+            seen += covered * eased(press, 0.10, 0.2)
+    return ti.min(seen, 1.0)
 
 
 @ti.func

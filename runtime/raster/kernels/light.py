@@ -308,8 +308,9 @@ def draw(
             stamp(depth, alone, m * size * size, size, a, b, c)
             least, most = ti.min(a, b, c), ti.max(a, b, c)
             for k in ti.static(range(2)):
-                low[k] = ti.cast(bounded(least[k] - 1.0, 0.0, ti.cast(size, ti.f32)), ti.i32)
-                high[k] = ti.cast(bounded(most[k] + 1.0, 0.0, ti.cast(size, ti.f32)), ti.i32)
+                # bounded as whole numbers: what is none may be any of those
+                low[k] = ti.min(ti.max(ti.cast(least[k] - 1.0, ti.i32), 0), size)
+                high[k] = ti.min(ti.max(ti.cast(most[k] + 1.0, ti.i32), 0), size)
     return low, high
 
 

@@ -4,7 +4,7 @@ Assumes meshes of closed shells, as bodies are. Guarantees: a coarser level keep
 so that skinning, normals and weights are shared; its faces take part, colour and material from the nearest
 face of the same shell. What the finer one adds to the vertices comes after all others, and is skinned only
 where it is seen. Which level is drawn depends on a view and its moment alone, so that a batch gives what its
-views give one by one; a change of level moves outlines by less than a pixel.
+views give one by one; a change of level moves outlines by about a pixel at most.
 """
 
 from __future__ import annotations

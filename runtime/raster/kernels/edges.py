@@ -146,12 +146,11 @@ def run_into(
     NEVER if it does not, or does so rather along these steps than across them. Their planes are asked: within
     a step what they belong to bends little.
     """
-    p, q, r = corners(t, m, eye, vertices, position, faces, counts)
-    plane = (q - p).cross(r - p)
-    apart = plane / plane.dot(p)  # times a ray: 1/z
-    p, q, r = corners(u, m, eye, vertices, position, faces, counts)
-    plane = (q - p).cross(r - p)
-    apart -= plane / plane.dot(p)
+    apart = vec3(0)  # times a ray: 1/z of the first less that of the second
+    for turn in range(2):
+        p, q, r = corners(t if turn == 0 else u, m, eye, vertices, position, faces, counts)
+        plane = (q - p).cross(r - p)
+        apart += plane / plane.dot(p) * (1.0 if turn == 0 else -1.0)
     before, change = apart.dot(ray), apart.dot(step)
     out = NEVER
     if before > 0 and before + change < 0 and ti.abs(change) >= ti.abs(apart.dot(beside)):

@@ -16,7 +16,7 @@ from . import crew
 from .borders import TOUCH, find_borders, quiet
 from .gather import fv, iv
 from .geometry import f1, f2, i1, nearness, u32s, u64s, vec3
-from .paint import INK, NOTHING, decode, encode, unpack_direction
+from .paint import INK, NOTHING, decode, encode, unpack_normal
 from .paint import RUN as BLOCK
 
 i32s = ti.types.ndarray(ti.i32, ndim=1)
@@ -36,7 +36,7 @@ def bends(e, f, cosine):
     """Whether the angle between two packed normals is wider than that of a cosine above 0."""
     out = False
     if not level(e, f):
-        n, m = unpack_direction(e), unpack_direction(f)
+        n, m = unpack_normal(e), unpack_normal(f)
         along = n.dot(m)
         # compared squared, as normals of any length do
         out = along <= 0.0 or along * along < cosine * cosine * n.norm_sqr() * m.norm_sqr()

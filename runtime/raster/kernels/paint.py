@@ -39,8 +39,8 @@ def pack_normal(n):
 
 
 @ti.func
-def unpack_direction(bits):
-    """A packed normal, of whatever length."""
+def unpack_normal(bits):
+    """A packed normal, of whatever length comes of it."""
     x = ti.cast((bits >> 8) & 0xFF, ti.f32) * (2.0 / 254.0) - 1.0
     y = ti.cast(bits & 0xFF, ti.f32) * (2.0 / 254.0) - 1.0
     z = 1.0 - ti.abs(x) - ti.abs(y)
@@ -49,11 +49,6 @@ def unpack_direction(bits):
         y = (1.0 - ti.abs(x)) * (1.0 if y >= 0 else -1.0)
         x = ox
     return vec3(x, y, z)
-
-
-@ti.func
-def unpack_normal(bits):
-    return unpack_direction(bits).normalized()
 
 
 @ti.func

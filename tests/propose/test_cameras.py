@@ -15,7 +15,7 @@ from vdsl.cinema.takes import samples
 from vdsl.cinema.track import camera_axes, project
 from vdsl.propose.cameras import Filming, propose_cameras
 from vdsl.propose.rejection import REASONS
-from vdsl.propose.subjects import subject_of
+from vdsl.propose.subjects import performed, subject_of
 from vdsl.propose.types import ProposalGrid
 
 BODY = skeleton()
@@ -104,6 +104,19 @@ def test_cameras_keep_out_of_other_people() -> None:
     everybody = replace(filming(), skeletons=dict.fromkeys(("anna", *ring), BODY))
     grid = propose_cameras(shot(scale="close-up"), [story({"anna": acted, **ring})], everybody)
     assert grid.rejected["in_person"] + grid.rejected["subject_hidden"] > 10
+
+
+def test_cameras_keep_out_of_whom_they_film() -> None:
+    frames = 24
+    bent = standing(BODY, np.zeros((frames, 3)), np.zeros(frames), lean=0.5)
+    asked = shot(scale="extreme-close-up", angle="worms-eye", lens=(24.0, 50.0))
+    grid = propose_cameras(asked, [story({"anna": bent})], filming())
+    assert grid.rejected["in_person"] > 10 and len(grid.cameras) > 4
+    marks = performed("anna", bent, BODY).landmarks
+    for c in grid.cameras:
+        for share in np.linspace(0.0, 1.0, 21):
+            trunk = marks["waist"] + share * (marks["collar"] - marks["waist"])
+            assert np.linalg.norm(c.track.position - trunk, axis=1).min() > 0.2
 
 
 def room(depth: float = 3.0) -> object:

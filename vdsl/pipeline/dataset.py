@@ -44,7 +44,7 @@ from .labels import WORDS
 from .progress import Progress, Silence
 
 #: Raised when other takes or labels come of the same seed.
-_RECIPE = 39
+_RECIPE = 40
 #: Proposals of a shot in most stories, and in every so many-th: of many, more are looked for beside the best
 #: and off the grid, as where ``compile`` looks for a take.
 _PROPOSALS, _MANY, _EVERY = 8, 32, 5

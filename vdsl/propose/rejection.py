@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from runtime.world import Solids
 
 from ..cinema.angles import lens_height, shows
+from ..cinema.bodies import own_room
 from ..cinema.measures import Measured
 from ..cinema.moves import FLOOR_CLEARANCE, families
 from ..cinema.space import Nearby, Stage, clearance
@@ -52,6 +53,7 @@ _NEAR_WALL = 0.2  # metres to a wall that is drawn
 _NEAR_OBJECT = 0.3
 _NEAR_PERSON = 0.12  # to a pillar 0.22 m thick
 _NEAR_FACE = 0.22
+_NEAR_BODY = 0.04  # to trunk, head or arms of whom it films
 _OUTSIDE = 3.0
 _ABOVE = 1.6  # metres over a ceiling
 #: Movements that change the size, and those that keep it and the subject all the time.
@@ -110,6 +112,9 @@ def reasons(shooting: Shooting, measured: Measured, subject: Subject) -> NDArray
     v, track = measured.values, shooting.track
     paper = shooting.rig == "paper"
     own = length(track.position - subject.landmarks["eyes"][None]).min(axis=1)
+    within = np.zeros(len(own), bool)
+    for one in subject.own:
+        within |= own_room(one, track.position) < _NEAR_BODY
     moving = np.array([bool(families(m) & _RESIZE) for m in shooting.movements])
     whips = np.array(["whip-pan" in families(m) for m in shooting.movements])
     moving |= shooting.view == "pov"  # its owner goes nearer, or farther
@@ -120,7 +125,9 @@ def reasons(shooting: Shooting, measured: Measured, subject: Subject) -> NDArray
     walked = float(np.linalg.norm(np.diff(subject.position, axis=0), axis=1).sum())
     asked = {
         "in_wall": measured.shown < _NEAR_WALL * _arm(shooting),
-        "in_person": (measured.people < _NEAR_PERSON) | ((own < _NEAR_FACE) & (subject.kind == "person")),
+        "in_person": (measured.people < _NEAR_PERSON)
+        | ((own < _NEAR_FACE) & (subject.kind == "person"))
+        | within,
         "subject_out_of_frame": v["in_frame"] < np.where(keeps, 0.85, 0.5 if walked > 0.5 else 0.7),
         "subject_hidden": (v["visibility"] < 0.6)
         | (v["ends_visible"] < 0.4)

@@ -18,6 +18,7 @@ CLAY_HOURS = 0.25  # 0: as light at night as at noon, 1: as dark as it is
 CLAY_BACKDROP = ((0.93, 0.93, 0.92), (0.80, 0.83, 0.86))  # sRGB
 LUMA = np.array([0.2126, 0.7152, 0.0722])
 CLOTH_INK, SKIN_INK = (0.40, 0.84), (0.50, 0.90)  # darkness from which it takes ink, and at which it is black
+CLOTH_WASH, SKIN_WASH = (0.25, 0.95), (0.45, 1.0)  # and the same of a wash of grey
 SHADE_INK = 0.24  # ink of skin that no light reaches, at least
 PAPER_SHARE = 0.66  # what a thing must throw back of the light to stay white on paper
 GLOOM = (200.0, 145.0)  # paper levels at which it begins to be, and is as gloomy as can be
@@ -65,17 +66,24 @@ def gloom(light: Light) -> float:
 def paper_tones(
     color: NDArray[np.floating], material: NDArray[np.integer], light: Light
 ) -> NDArray[np.float32]:
-    """What paper makes of things of linear colours [F, 3], float32 [F, 2].
+    """What paper makes of things of linear colours [F, 3], float32 [F, 3].
 
-    How light they are in all of the light, 1: as light as paper; and how much ink their own colour takes,
-    0..1. Dark cloth is black; skin, which is no cloth, stays open so that the face on it can be read.
+    How light they are in all of the light, 1: as light as paper; how much ink their own colour takes in
+    strokes, and how much in a wash of grey, 0..1. Dark cloth is black; skin, which is no cloth, stays open so
+    that the face on it can be read.
     """
     tone = np.clip(_most(np.asarray(color, np.float64), light) / paper_level(light), 0.05, 1.0)
-    low, high = np.where((material == MATERIALS.index("cloth"))[:, None], CLOTH_INK, SKIN_INK).T
-    share = np.clip((1.0 - tone - low) / (high - low), 0.0, 1.0)
-    ink = 0.84 * share * share * (3.0 - 2.0 * share)
+    cloth = (material == MATERIALS.index("cloth"))[:, None]
+    ink = 0.84 * _share(1.0 - tone, *np.where(cloth, CLOTH_INK, SKIN_INK).T)
     ink = np.where(material == SKIN_SHADE, np.maximum(ink, SHADE_INK), ink)
-    return np.stack([tone, ink], axis=1).astype(np.float32)
+    wash = 0.92 * _share(1.0 - tone, *np.where(cloth, CLOTH_WASH, SKIN_WASH).T)
+    return np.stack([tone, ink, wash], axis=1).astype(np.float32)
+
+
+def _share(x: NDArray[np.float64], low: NDArray[np.float64], high: NDArray[np.float64]) -> NDArray[np.float64]:
+    """0 up to low, 1 from high on, eased in between."""
+    share = np.clip((x - low) / (high - low), 0.0, 1.0)
+    return np.asarray(share * share * (3.0 - 2.0 * share))
 
 
 def _most(color: NDArray[np.float64], light: Light) -> NDArray[np.float64]:

@@ -11,7 +11,7 @@ nearer, strokes grow in between; nothing jumps.
 import taichi as ti
 
 from . import crew
-from .geometry import bounded, f1, f2, f3, i1, i2, item3, part3, row3, triangle, u32s, u64s, vec3
+from .geometry import bounded, f1, f2, f3, i1, i2, item3, nearness, part3, row3, triangle, u32s, u64s, vec3
 from .paint import RUN, SHADE
 from .pattern import value_noise
 
@@ -22,6 +22,11 @@ SOFT, SOFTER = 1.25, 0.2
 LIGHTEST = (0.1, 0.26)  # darkness at which strokes begin, and have all of their ink
 DEEPER = 0.4  # how much lighter a set has to be to stay white where it is as gloomy as can be
 OPENER = 0.4  # and how much of their ink people lose there, so that they stand out
+SET = 0.62  # of their ink that strokes of a set have: black is for people
+HALO = 0.0085  # of the picture's height around people, where the set behind them has no strokes
+#: Metres between strokes from which on people begin to have a wash of grey instead, and have nothing else;
+#: how dark their shadows are in it.
+AFAR, SHADOW = (0.008, 0.015), 0.3
 SKY, BRIGHT = 0.9, 165.0  # how dark strokes make a sky, and the luma from which on it stays white
 
 
@@ -88,6 +93,25 @@ def inked(ink):
     return r8 | (g8 << 8) | (b8 << 16) | (((r8 * 5 + g8 * 9 + b8 * 2) >> 4) << 24)
 
 
+@ti.func
+def haloed(i, x, y, width, height, reach, vis: ti.template(), own: ti.template()):
+    """How near somebody's outline is, before a place of the set: 0..1."""
+    here = nearness(vis, i)
+    found = 0.0
+    for k in range(16):
+        r = reach if k < 8 else (reach + 1) // 2
+        dx = r * (1 if (k % 8 == 0 or k % 8 == 1 or k % 8 == 7) else (-1 if (k % 8 >= 3 and k % 8 <= 5) else 0))
+        dy = r * (1 if (k % 8 >= 1 and k % 8 <= 3) else (-1 if (k % 8 >= 5) else 0))
+        u, v = x + dx, y + dy
+        if 0 <= u < width and 0 <= v < height:
+            j = i + dy * width + dx
+            t = triangle(vis, j)
+            if t >= 0:
+                if own[t, 1] >= 0 and nearness(vis, j) > here:
+                    found += 1.0
+    return bounded(found * 0.5, 0.0, 1.0)
+
+
 @ti.kernel
 def hatch_rows(
     view: f2,
@@ -130,6 +154,8 @@ def hatch_rows(
                 part3(view, n, 9) + down * (line % height + 0.5 - view[n, 15]) + step * (0.5 - view[n, 14])
             )
             spacing = ti.max(SPACING * height, 3.2)
+            apart = spacing * step.norm()  # metres between strokes a metre away
+            reach = ti.max(ti.cast(HALO * height + 0.5, ti.i32), 2)
             last = -2
             plane, ga, gb = vec3(0), vec3(0), vec3(0)
             offset, xa, xb = 1.0, 0.0, 0.0
@@ -152,19 +178,24 @@ def hatch_rows(
                         across = ti.Vector([wa.dot(step) - ra * turn, wa.dot(down) - ra * drop]).norm() * far
                         half = pressed(dark, spacing)
                         ink = strokes(ra * far, rb * far, across, spacing, half, lattice)
-                        ink *= eased(dark, LIGHTEST[0], LIGHTEST[1])
+                        ink *= SET * eased(dark, LIGHTEST[0], LIGHTEST[1])
                     picture[i] = inked(ink)
                 else:
                     tone /= level
-                    dark = 0.0
-                    if own[t, 1] < 0:
+                    dark, wash, afar = 0.0, 0.0, 0.0
+                    moves = own[t, 1] >= 0
+                    if not moves:
                         # sets are quiet
                         dark = 0.85 * (1.0 - tone / (1.0 + DEEPER * gloom)) - 0.05
                     else:
                         # people: shadows whatever the colour, and what is dark itself
-                        dark = (0.62 * (1.0 - tone / own[t, 0]) + own[t, 1]) * (1.0 - OPENER * gloom)
+                        shadow = 0.62 * (1.0 - tone / own[t, 0])
+                        dark = (shadow + own[t, 1]) * (1.0 - OPENER * gloom)
+                        shadow = SHADOW * eased(shadow, LIGHTEST[0], LIGHTEST[1])
+                        wash = own[t, 2] + (1.0 - own[t, 2]) * shadow
+                        afar = eased(apart / nearness(vis, i), AFAR[0], AFAR[1])
                     ink = 0.0
-                    if dark > LIGHTEST[0]:
+                    if dark > LIGHTEST[0] and afar < 1.0:
                         if t != last:
                             last = t
                             a, b, c = faces[t, 0], faces[t, 1], faces[t, 2]
@@ -205,4 +236,6 @@ def hatch_rows(
                             other = strokes(place_b, place_a, across_b, spacing, half, lattice)
                             ink = ti.max(ink, other * eased(dark, 0.46, 0.58))
                             ink = ti.max(ink, eased(dark, 0.6, 0.76))
-                    picture[i] = inked(ink)
+                        if not moves:
+                            ink *= SET * (1.0 - haloed(i, x, line % height, width, height, reach, vis, own))
+                    picture[i] = inked(ink + (wash - ink) * afar)

@@ -69,18 +69,21 @@ def paper_tones(
     """What paper makes of things of linear colours [F, 3], float32 [F, 3].
 
     How light they are in all of the light, 1: as light as paper; how much ink their own colour takes in
-    strokes, and how much in a wash of grey, 0..1. Dark cloth is black; skin, which is no cloth, stays open so
-    that the face on it can be read.
+    strokes, 0..1, and in a wash of grey, which is the same at any hour. Dark cloth is black; skin, which is
+    no cloth, stays open so that the face on it can be read.
     """
     tone = np.clip(_most(np.asarray(color, np.float64), light) / paper_level(light), 0.05, 1.0)
     cloth = (material == MATERIALS.index("cloth"))[:, None]
     ink = 0.84 * _share(1.0 - tone, *np.where(cloth, CLOTH_INK, SKIN_INK).T)
     ink = np.where(material == SKIN_SHADE, np.maximum(ink, SHADE_INK), ink)
-    wash = 0.92 * _share(1.0 - tone, *np.where(cloth, CLOTH_WASH, SKIN_WASH).T)
+    pale = _luma(to_encoded(np.asarray(color, np.float64))) / _luma(to_encoded(np.full(3, PAPER_SHARE)))
+    wash = 0.92 * _share(1.0 - pale, *np.where(cloth, CLOTH_WASH, SKIN_WASH).T)
     return np.stack([tone, ink, wash], axis=1).astype(np.float32)
 
 
-def _share(x: NDArray[np.float64], low: NDArray[np.float64], high: NDArray[np.float64]) -> NDArray[np.float64]:
+def _share(
+    x: NDArray[np.float64], low: NDArray[np.float64], high: NDArray[np.float64]
+) -> NDArray[np.float64]:
     """0 up to low, 1 from high on, eased in between."""
     share = np.clip((x - low) / (high - low), 0.0, 1.0)
     return np.asarray(share * share * (3.0 - 2.0 * share))
@@ -89,7 +92,12 @@ def _share(x: NDArray[np.float64], low: NDArray[np.float64], high: NDArray[np.fl
 def _most(color: NDArray[np.float64], light: Light) -> NDArray[np.float64]:
     """Luma 0..255 of colours [F, 3] under sky and sun together."""
     most = np.array(light.sky, np.float64) + np.array(light.sun_color)
-    return np.asarray(to_encoded(exposed(color * most)) @ np.array([5, 9, 2]) / 16 * 255)
+    return _luma(to_encoded(exposed(color * most))) * 255
+
+
+def _luma(encoded: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Of sRGB colours [..., 3], as kernels have it."""
+    return np.asarray(encoded @ np.array([5, 9, 2]) / 16)
 
 
 def glass_colors(color: NDArray[np.floating], style: Style) -> NDArray[np.float32]:

@@ -17,7 +17,7 @@ from ..mesh import Mesh
 from ..world import Light
 
 #: Rises whenever the same scene and views may give other pixels than before; kept results go by it.
-LOOK_VERSION: int = 28
+LOOK_VERSION: int = 29
 #: In ``fitting``: a person, or a thing that is carried about.
 LOOSE = -2
 #: What guides tell of each cell of a picture: shares of the subject, of its head, of the front of that, of

@@ -22,7 +22,8 @@ SOFT, SOFTER = 1.25, 0.2
 LIGHTEST = (0.1, 0.26)  # darkness at which strokes begin, and have all of their ink
 DEEPER = 0.4  # how much lighter a set has to be to stay white where it is as gloomy as can be
 OPENER = 0.4  # and how much of their ink people lose there, so that they stand out
-SET = 0.62  # of their ink that strokes of a set have: black is for people
+LEAST = 0.03  # ink that is seen
+SET = 0.7  # of their ink that strokes of a set have: black is for people
 HALO = 0.0085  # of the picture's height around people, where the set behind them has no strokes
 #: Metres between strokes from which on people begin to have a wash of grey instead, and have nothing else;
 #: how dark their shadows are in it.
@@ -95,21 +96,24 @@ def inked(ink):
 
 @ti.func
 def haloed(i, x, y, width, height, reach, vis: ti.template(), own: ti.template()):
-    """How near somebody's outline is, before a place of the set: 0..1."""
+    """How near a place of the set is to somebody's outline before it, 0..1.
+
+    i, x, y: its pixel; reach: pixels, looked for in eight ways, and half as far where anything is found
+    """
     here = nearness(vis, i)
-    found = 0.0
-    for k in range(16):
-        r = reach if k < 8 else (reach + 1) // 2
-        dx = r * (1 if (k % 8 == 0 or k % 8 == 1 or k % 8 == 7) else (-1 if (k % 8 >= 3 and k % 8 <= 5) else 0))
-        dy = r * (1 if (k % 8 >= 1 and k % 8 <= 3) else (-1 if (k % 8 >= 5) else 0))
+    found = 0
+    for k in range(18):
+        if k == 9 and found == 0:
+            break
+        far = ti.select(k < 9, reach, (reach + 1) // 2)
+        dx, dy = far * (k % 3 - 1), far * (k // 3 % 3 - 1)
         u, v = x + dx, y + dy
         if 0 <= u < width and 0 <= v < height:
             j = i + dy * width + dx
             t = triangle(vis, j)
-            if t >= 0:
-                if own[t, 1] >= 0 and nearness(vis, j) > here:
-                    found += 1.0
-    return bounded(found * 0.5, 0.0, 1.0)
+            if t >= 0 and nearness(vis, j) > here and own[t, 1] >= 0:
+                found += 1
+    return ti.min(0.5 * ti.cast(found, ti.f32), 1.0)
 
 
 @ti.kernel
@@ -236,6 +240,6 @@ def hatch_rows(
                             other = strokes(place_b, place_a, across_b, spacing, half, lattice)
                             ink = ti.max(ink, other * eased(dark, 0.46, 0.58))
                             ink = ti.max(ink, eased(dark, 0.6, 0.76))
-                        if not moves:
+                        if not moves and ink > LEAST:
                             ink *= SET * (1.0 - haloed(i, x, line % height, width, height, reach, vis, own))
                     picture[i] = inked(ink + (wash - ink) * afar)

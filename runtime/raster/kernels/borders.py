@@ -16,11 +16,19 @@ from .paint import INK, NOTHING
 from .paint import RUN as BLOCK
 
 TOUCH = 0.04  # metres
+NEAR_PLANE = 0.7  # metres from the eye of planes that change their depth most from pixel to pixel
 FOLD = 0.03  # of 1/z squared: where a surface ends before itself
 HALF = LANES // 2
 NO_SURFACE = NOTHING - (1 << 32)  # as a signed number
 ALL = (1 << LANES) - 1
 BOTH_ENDS = 3 << (LANES - 2)  # the bits of the last two pixels of a run
+
+
+@ti.func
+def slope(focal):
+    """By how much 1/z changes from pixel to pixel at most, as of floors and ceilings seen at a slant; focal:
+    in pixels. What is no further apart touches."""
+    return 1.0 / (NEAR_PLANE * focal)
 
 
 @ti.func
@@ -99,28 +107,29 @@ def turned(e, f):
 
 
 @ti.func
-def lined(e, f, w, w_f, w_back, back):
-    """Sixteen times whether ``ink.line_weight`` may be above zero; back: what is behind a pixel."""
+def lined(e, f, w, w_f, w_back, back, slant):
+    """Sixteen times whether ``ink.line_weight`` may be above zero; back: what is behind a pixel; slant: see
+    :func:`slope`."""
     nearer = ti.select(w > w_f, I(1), I(0))
     folded = ti.select(2.0 * w - w_back - w_f > 0.03 * w * w, nearer, I(0))
     folded = ti.select(((e ^ back) >> 16) == 0, folded, I(0)) | turned(e, f)
-    return ti.select(((e ^ f) >> 16) == 0, folded, outlined(e, f, w, w_f))
+    return ti.select(((e ^ f) >> 16) == 0, folded, outlined(e, f, w, w_f, slant))
 
 
 @ti.func
-def outlined(e, f, w, w_f):
+def outlined(e, f, w, w_f, slant):
     """The same where the surfaces differ."""
     nearer = ti.select(w > w_f, I(1), I(0))
     later = ti.select(((e >> 16) & 0xFFFF) > ((f >> 16) & 0xFFFF), I(1), I(0))
-    between = ti.select(magnitude(w - w_f) < TOUCH * w * w, later, nearer)
+    between = ti.select(magnitude(w - w_f) < TOUCH * w * w + slant, later, nearer)
     return ti.select(f == NO_SURFACE, I(1), between)
 
 
 @ti.func
-def broadened(e, f, g, w, w_g):
+def broadened(e, f, g, w, w_g, slant):
     """Where a broad line of a surface that moves may come from the pixel beside it; g: the one after f."""
     same = ti.select(((e ^ f) >> 16) == 0, I(1), I(0))
-    return ti.select(((e ^ g) >> 16) != 0, same, I(0)) & outlined(f, g, w, w_g)
+    return ti.select(((e ^ g) >> 16) != 0, same, I(0)) & outlined(f, g, w, w_g, slant)
 
 
 @ti.func
@@ -154,6 +163,7 @@ def find_borders(
     solid: ti.template(),
     level: ti.template(),
     first_moving,
+    slant,
     outline: ti.template(),
     telling,
     found: ti.template(),
@@ -253,10 +263,10 @@ def find_borders(
                     ends = still | (here & moving)
                     here &= something & (still | moving)
                     if here != 0:
-                        left_of = lined(e, e_left, w, w_left, w_right, e_right)
-                        right_of = lined(e, e_right, w, w_right, w_left, e_left)
-                        over = lined(e, e_above, w, w_above, w_below, e_below)
-                        under = lined(e, e_below, w, w_below, w_above, e_above)
+                        left_of = lined(e, e_left, w, w_left, w_right, e_right, slant)
+                        right_of = lined(e, e_right, w, w_right, w_left, e_left, slant)
+                        over = lined(e, e_above, w, w_above, w_below, e_below, slant)
+                        under = lined(e, e_below, w, w_below, w_above, e_above, slant)
                         if broad and (here & moving) != 0:
                             w_left2 = from_left(w_left, w_left, 1)
                             w_left2[0] = w_before[LANES - 3]
@@ -268,10 +278,10 @@ def find_borders(
                             w_below2 = odd_lanes(
                                 vis_number[2 * (k + far_down)], vis_number[2 * (k + far_down) + 1]
                             )
-                            left_of |= moves & broadened(e, e_left, e_left2, w_left, w_left2)
-                            right_of |= moves & broadened(e, e_right, e_right2, w_right, w_right2)
-                            over |= moves & broadened(e, e_above, e_above2, w_above, w_above2)
-                            under |= moves & broadened(e, e_below, e_below2, w_below, w_below2)
+                            left_of |= moves & broadened(e, e_left, e_left2, w_left, w_left2, slant)
+                            right_of |= moves & broadened(e, e_right, e_right2, w_right, w_right2, slant)
+                            over |= moves & broadened(e, e_above, e_above2, w_above, w_above2, slant)
+                            under |= moves & broadened(e, e_below, e_below2, w_below, w_below2, slant)
                         here |= here << LANES
                         rim = (rim | rim << LANES) & here
                         beside = (bits_of(left_of, right_of, powers) & here) | rim

@@ -40,6 +40,7 @@ FAR = 12  # triangles after which an end is no longer looked for
 REACH = 3  # pixels from which an edge is asked for
 UNKNOWN, OUTLINED, STEPS = 127, 128, 124  # of :func:`coded`
 FAINT = 12  # steps of luma that nobody sees
+BESIDE = 0.1  # share of the depth by which two surfaces that meet may be apart in neighbouring pixels
 MOST = 0.95  # of a pixel that may come from others
 
 
@@ -206,7 +207,8 @@ def passing(
     here, there = NEVER, NEVER
     here_across, there_across = False, False
     # it is that of the nearer one, if it ends there at all; asked for in one place, as it is much code
-    first = nearness(vis, at) >= nearness(vis, to)
+    w, v = nearness(vis, at), nearness(vis, to)
+    first = w >= v
     for turn in range(2):
         own = first if turn == 0 else not first
         asked = t if own else u
@@ -221,19 +223,24 @@ def passing(
                 here, here_across = steps, across
             else:
                 there, there_across = steps, across
+    met = NEVER
+    if 0 <= ti.min(t, u) < counts[0] and ti.abs(w - v) < BESIDE * ti.max(w, v):
+        # within a body they are too small to tell, and far apart they do not meet
+        met = run_into(t, u, m, eye, ray, step, beside, vertices, position, faces, counts)
     if kind == BEND and here < 1.0 and there < 1.0:
         if here_across or there_across:  # between them is what rounds the edge off
             out = 0.5 * (here - there)
     elif here < 1.0 and (first or there >= 1.0):
-        if here_across:
+        if met < here:
+            out = met - 0.5  # where it ends is behind the other
+        elif here_across:
             out = here - 0.5
+    elif there < 1.0 and 1.0 - there < met <= 1.0:
+        out = met - 0.5
     elif there < 1.0 and there_across:
         out = 0.5 - there
-    elif here >= 1.0 and there >= 1.0 and 0 <= ti.min(t, u) < counts[0]:
-        # nothing ends: they run into each other. Within a body they are too small to tell
-        met = run_into(t, u, m, eye, ray, step, beside, vertices, position, faces, counts)
-        if met <= 1.0:
-            out = met - 0.5
+    elif here >= 1.0 and there >= 1.0 and met <= 1.0:
+        out = met - 0.5  # nothing ends: they run into each other
     return out
 
 

@@ -13,7 +13,7 @@ import taichi as ti
 
 from ..types import Style
 from . import crew
-from .borders import TOUCH, find_borders, quiet
+from .borders import TOUCH, find_borders, quiet, slope
 from .gather import fv, iv
 from .geometry import f1, f2, i1, nearness, u32s, u64s, vec3
 from .paint import INK, NOTHING, decode, encode, unpack_normal
@@ -44,10 +44,11 @@ def bends(e, f, cosine):
 
 
 @ti.func
-def line_weight(e, f, w, w_f, w_back, first_moving, owner: ti.template()):
+def line_weight(e, f, w, w_f, w_back, first_moving, slant, owner: ti.template()):
     """How strongly the border from a pixel (e, 1/z = w) to a neighbour (f, w_f) is inked on the pixel's side.
 
-    w_back: 1/z behind the pixel, from which its surface is extended to the neighbour
+    w_back: 1/z behind the pixel, from which its surface is extended to the neighbour; slant: of
+    ``borders.slope``
     """
     out = 0.0
     s = ti.cast(e >> 16, ti.i32)
@@ -61,7 +62,7 @@ def line_weight(e, f, w, w_f, w_back, first_moving, owner: ti.template()):
             out = 1.0 if moves else 0.6
         else:
             # the nearer side; where the two touch, always the same one, or the line would jump across
-            touching = ti.abs(w - w_f) < TOUCH * w * w
+            touching = ti.abs(w - w_f) < TOUCH * w * w + slant
             if (touching and s > s_f) or (not touching and w > w_f):
                 if owner[s] != owner[s_f]:
                     out = 1.0 if moves else (0.45 if touching else 0.6)
@@ -126,6 +127,7 @@ def ink_kernels(style: Style) -> SimpleNamespace:
         width,
         height,
         weight,
+        slant,
         first_moving,
         picture: ti.template(),
         edge: ti.template(),
@@ -160,13 +162,13 @@ def ink_kernels(style: Style) -> SimpleNamespace:
                 if behind == 0 or ((e ^ edge[back]) >> 16) != 0:
                     w_back = w - (w_q - w) if (e ^ f) >> 16 == 0 else w
                 if e != f or ti.abs(2 * w - w_back - w_q) > 0.03 * w * w:
-                    ink = ti.max(ink, line_weight(e, f, w, w_q, w_back, first_moving, owner))
+                    ink = ti.max(ink, line_weight(e, f, w, w_q, w_back, first_moving, slant, owner))
                 if moves and broad > 1.0 and ink < 0.9 and ahead > 1 and (e ^ f) >> 16 == 0:
                     g = edge[q + step]
                     if (e ^ g) >> 16 != 0:
                         share = ti.min(broad - 1.0, 1.0)
                         far = nearness(vis, q + step)
-                        ink = ti.max(ink, share * line_weight(f, g, w_q, far, w, first_moving, owner))
+                        ink = ti.max(ink, share * line_weight(f, g, w_q, far, w, first_moving, slant, owner))
         if ink > 0:
             c = decode(picture[at], linear)
             if ti.static(hatch):
@@ -179,7 +181,7 @@ def ink_kernels(style: Style) -> SimpleNamespace:
             else:
                 ink *= ti.min(1.0, 0.5 + 5.0 * w)
             if ti.static(hatch):
-                line = vec3(0.006)
+                line = vec3(0.006 if moves else 0.09)
             picture[at] = encode(c + (line - c) * ink, table)
 
     @ti.kernel
@@ -211,7 +213,8 @@ def ink_kernels(style: Style) -> SimpleNamespace:
         for slot in range(slots):
             line = crew.task(slot, views * height, queue, host)
             if line < views * height:
-                weight = 0.0065 * view[line // height, 13]
+                focal = view[line // height, 13]
+                weight, slant = 0.0065 * focal, slope(focal)
                 y = line % height
                 blocks = (width + BLOCK - 1) // BLOCK
                 for b in range(blocks):
@@ -245,6 +248,7 @@ def ink_kernels(style: Style) -> SimpleNamespace:
                                         width,
                                         height,
                                         weight,
+                                        slant,
                                         first_moving,
                                         picture,
                                         edge,
@@ -293,7 +297,8 @@ def ink_kernels(style: Style) -> SimpleNamespace:
         for slot in range(slots):
             line = crew.task(slot, views * height, queue, True)
             if line < views * height:
-                weight = 0.0065 * view[line // height, 13]
+                focal = view[line // height, 13]
+                weight, slant = 0.0065 * focal, slope(focal)
                 y = line % height
                 blocks = width // BLOCK
                 find_borders(
@@ -305,6 +310,7 @@ def ink_kernels(style: Style) -> SimpleNamespace:
                     solid,
                     level,
                     first_moving,
+                    slant,
                     outline,
                     telling,
                     found,
@@ -335,6 +341,7 @@ def ink_kernels(style: Style) -> SimpleNamespace:
                                 width,
                                 height,
                                 weight,
+                                slant,
                                 first_moving,
                                 picture,
                                 edge,

@@ -81,6 +81,38 @@ def line_weight(e, f, w, w_f, w_back, first_moving, slant, owner: ti.template())
 
 
 @ti.func
+def apart(e, f):
+    """Whether two packed pixels are of two surfaces, or of two facets of one."""
+    return (e ^ f) >> 16 != 0 or not level(e, f)
+
+
+@ti.func
+def of_sliver(at, q, step, side, edge: ti.template(), vis: ti.template()):
+    """Whether the line between two pixels of the set is one of a facet a pixel wide.
+
+    One sample a pixel meets such a facet by chance, and its line would come and go as dashes: a crease needs
+    two pixels on either side; and past a step of some millimetres what lies in one plane is without one.
+    step, side: from pixel to pixel across the line and along it; all around both there are pixels
+    """
+    d, e, f, g = edge[at - step], edge[at], edge[q], edge[q + step]
+    beside, other = edge[q - side], edge[q + side]
+    thin = apart(f, beside) and apart(f, other)
+    out = False
+    if (e ^ f) >> 16 == 0:
+        w, w_f = nearness(vis, at), nearness(vis, q)
+        ends = 2.0 * w - nearness(vis, at - step) - w_f > (0.035 * w + 0.012) * w and w > w_f
+        thin |= apart(d, e) or apart(f, g) or (apart(e, edge[at - side]) and apart(e, edge[at + side]))
+        out = thin and not ends
+    elif thin:
+        out = not apart(e, beside) or not apart(e, other)
+    elif (f ^ g) >> 16 == 0 and not level(f, g):
+        w = nearness(vis, at)
+        gap = 3.0 * w - 2.0 * nearness(vis, at - step) - nearness(vis, q + step)
+        out = ti.abs(gap) < 0.006 * w * w and not bends(e, g, 0.98)
+    return out
+
+
+@ti.func
 def alone(x, y, at, width, height, vis: ti.template()):
     """Whether one triangle is at a pixel and all around it."""
     t = ti.cast(vis[at], ti.u32)
@@ -162,7 +194,12 @@ def ink_kernels(style: Style) -> SimpleNamespace:
                 if behind == 0 or ((e ^ edge[back]) >> 16) != 0:
                     w_back = w - (w_q - w) if (e ^ f) >> 16 == 0 else w
                 if e != f or ti.abs(2 * w - w_back - w_q) > 0.03 * w * w:
-                    ink = ti.max(ink, line_weight(e, f, w, w_q, w_back, first_moving, slant, owner))
+                    strong = line_weight(e, f, w, w_q, w_back, first_moving, slant, owner)
+                    inside = 1 < x < width - 2 and 1 < y < height - 2
+                    if strong > ink and inside and not moves and f != ti.u32(NOTHING):  # noqa: SIM102
+                        if of_sliver(at, q, step, width if k < 2 else 1, edge, vis):
+                            strong = 0.0
+                    ink = ti.max(ink, strong)
                 if moves and broad > 1.0 and ink < 0.9 and ahead > 1 and (e ^ f) >> 16 == 0:
                     g = edge[q + step]
                     if (e ^ g) >> 16 != 0:

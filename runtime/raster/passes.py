@@ -111,7 +111,7 @@ class Passes:
             places = (a["vertices"], a["rest"], moments.position, a["faces"])
             counts = (scene.static_faces, loaded.static_vertices)
             paper = (a["tone"], *loaded.paper, self._lattice)
-            strokes = (layer.vis, layer.level, layer.picture)
+            strokes = (layer.vis, layer.edge, layer.level, layer.picture)
             rows = self._backend.crew(views * size[1])
             self._hatch.hatch_rows(view, moment, *places, *counts, *paper, *strokes, *extent, *rows)
         elif not self._style.clay:

@@ -24,6 +24,8 @@ DEEPER = 0.4  # how much lighter a set has to be to stay white where it is as gl
 OPENER = 0.4  # and how much of their ink people lose there, so that they stand out
 LEAST = 0.03  # ink that is seen
 SET = 0.7  # of their ink that strokes of a set have: black is for people
+NARROW = 1.6  # times the way between strokes: what has less room has none
+FLAT = 0.28  # ink that is there instead, as much as strokes have in the middle
 HALO = 0.0085  # of the picture's height around people, where the set behind them has no strokes
 #: Metres between strokes from which on people begin to have a wash of grey instead, and have nothing else;
 #: how dark their shadows are in it.
@@ -95,6 +97,26 @@ def inked(ink):
 
 
 @ti.func
+def narrow(i, x, y, width, height, room, edge: ti.template()):
+    """Whether a surface is less than ``room`` pixels wide about one of its pixels: there is no place for
+    strokes on it, and bits of them would come and go."""
+    s = edge[i] >> 16
+    out = False
+    for k in range(6):
+        # looked for to either side, ``room`` pixels in all: across, then up and down
+        one = room * (k % 3 + 1) // 4
+        step, place, size = (
+            ti.select(k < 3, 1, width),
+            ti.select(k < 3, x, y),
+            ti.select(k < 3, width, height),
+        )
+        before, after = ti.min(one, place), ti.min(room - one, size - 1 - place)
+        if not out and edge[i - before * step] >> 16 != s:
+            out = edge[i + after * step] >> 16 != s
+    return out
+
+
+@ti.func
 def haloed(i, x, y, width, height, reach, vis: ti.template(), own: ti.template()):
     """How near a place of the set is to somebody's outline before it, 0..1.
 
@@ -131,6 +153,7 @@ def hatch_rows(
     gloom: ti.f32,
     lattice: f1,
     vis: u64s,
+    edge: u32s,
     todo: i1,
     picture: u32s,
     views: ti.i32,
@@ -159,6 +182,7 @@ def hatch_rows(
             )
             spacing = ti.max(SPACING * height, 3.2)
             apart = spacing * step.norm()  # metres between strokes a metre away
+            room = ti.cast(NARROW * spacing + 0.5, ti.i32)
             reach = ti.max(ti.cast(HALO * height + 0.5, ti.i32), 2)
             last = -2
             plane, ga, gb = vec3(0), vec3(0), vec3(0)
@@ -199,7 +223,10 @@ def hatch_rows(
                         wash = own[t, 2] + (1.0 - own[t, 2]) * shadow
                         afar = eased(apart / nearness(vis, i), AFAR[0], AFAR[1])
                     ink = 0.0
-                    if dark > LIGHTEST[0] and afar < 1.0:
+                    if not moves and dark > LIGHTEST[0]:  # noqa: SIM102
+                        if narrow(i, x, line % height, width, height, room, edge):
+                            ink = FLAT * eased(dark, LIGHTEST[0], LIGHTEST[1])
+                    if dark > LIGHTEST[0] and afar < 1.0 and ink == 0.0:
                         if t != last:
                             last = t
                             a, b, c = faces[t, 0], faces[t, 1], faces[t, 2]

@@ -143,6 +143,36 @@ def by_both(monkeypatch: pytest.MonkeyPatch) -> list[tuple[NDArray[Any], NDArray
     return seen
 
 
+def test_where_wall_and_ceiling_meet_is_one_line() -> None:
+    """Seen at a slant, where the ceiling ends inside the wall, it is as dark everywhere, and straight."""
+    pale = (0.8, 0.8, 0.8)
+    corner = [box((-8, -3, 2.4), (8, 8.03, 2.5), pale), box((-8, 8, -1), (8, 8.3, 2.7), pale, part=1)]
+    drawer = Renderer("cpu", Style("lines", tones=0, shadows=False, occlusion=False))
+    for things in (corner, corner[::-1]):
+        drawer.load(scene(things, [], light=EVEN))
+        views = looking([(0.0, -0.5, 1.4)], [(0.6, 8.0, 2.3)])
+        strip = drawer.render(still(1), views, (640, 360)).color[0, 158:188, 40:600, 1].astype(float)
+        surface = strip[0] + (strip[-1] - strip[0]) * np.linspace(0, 1, 30)[:, None]
+        line = np.clip(surface - strip - 1.0, 0.0, None)
+        dark = line.sum(axis=0)
+        at, across = (line * np.arange(30)[:, None]).sum(axis=0) / dark, np.arange(560)
+        assert dark.min() > 0.6 * dark.max()
+        assert np.abs(at - np.polyval(np.polyfit(across, at, 1), across)).max() < 0.2
+
+
+def test_a_step_a_pixel_wide_is_not_dashed() -> None:
+    """A frame a few millimetres before a wall, whose side is met by samples here and there."""
+    pale = (0.8, 0.8, 0.8)
+    frame, wall = box((-2, -0.004, -2), (0.031, 0.3, 2), pale), box((-3, 0, -3), (3, 0.3, 3), pale, part=1)
+    drawer = Renderer("cpu", Style("lines", tones=0, shadows=False, occlusion=False))
+    drawer.load(scene([frame, wall], [], light=EVEN))
+    views = looking([(1.5, -7.0, 1.2)], [(0.0, 0.0, 0.0)])
+    strip = drawer.render(still(1), views, (640, 360)).color[0, 100:260, 280:370, 1].astype(float)
+    surface = np.maximum(strip[:, :1], strip[:, -1:])
+    dark = np.clip(surface - strip - 1.0, 0.0, None).sum(axis=1)
+    assert 0 < dark.max() < 2 * dark.min()
+
+
 @pytest.mark.parametrize("style", ["board", "clay"])
 def test_runs_of_sixteen_are_drawn_to_edges_as_single_pixels_are(
     style: str, by_both: list[tuple[NDArray[Any], NDArray[Any]]]

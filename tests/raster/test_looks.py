@@ -147,6 +147,19 @@ def test_strokes_of_a_set_end_before_people_and_are_paler_than_theirs() -> None:
     assert luma[wall].min() > near[front].min() + 30, "black is for people"
 
 
+def test_what_is_too_narrow_for_strokes_has_none() -> None:
+    dark = (0.2, 0.2, 0.2)
+    poles = [box((x, 4.0, -9), (x + wide, 4.0 + wide, 9), dark) for x, wide in ((-0.6, 0.03), (0.3, 0.3))]
+    picture = drawn(
+        "ink", scene(poles, [], light=NIGHT), looking([(0.0, 0.0, 1.0)], [(0.0, 4.0, 1.0)]), (640, 360)
+    )
+    luma = picture[0].astype(float).mean(axis=-1)
+    focal = 640 * 35 / 36
+    narrow, wide = (luma[20:340, 320 + round(x / 4 * focal)] for x in (-0.585, 0.45))
+    assert np.ptp(narrow) < 8, "a flat grey"
+    assert np.ptp(wide) > 60, "strokes"
+
+
 def test_a_door_is_hatched_like_the_wall_it_is_in() -> None:
     leaf = box((-1, 2, 0), (1, 2.1, 2), color=(0.05, 0.06, 0.1))
     views = looking([(0.0, -1.0, 1.0)], [(0.0, 2.0, 1.0)])

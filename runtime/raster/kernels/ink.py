@@ -21,6 +21,7 @@ from .paint import RUN as BLOCK
 
 i32s = ti.types.ndarray(ti.i32, ndim=1)
 EVERY = (1 << BLOCK) - 1
+PLANE = 0.003  # metres by which two faces in one plane may be apart
 
 
 @ti.func
@@ -71,7 +72,7 @@ def line_weight(e, f, w, w_f, w_back, first_moving, slant, owner: ti.template())
                 else:
                     out = 0.35 if touching else 0.5
                 # one plane, two faces in it (boxes that overlap): which is seen is chance, so no line
-                if not moves and touching and ti.abs(gap) < 0.003 * w * w and not bends(e, f, 0.98):
+                if not moves and touching and ti.abs(gap) < PLANE * w * w and not bends(e, f, 0.98):
                     out = 0.0
     elif gap > allowed and w > w_f:
         out = 0.8 if moves else 0.45
@@ -108,7 +109,7 @@ def of_sliver(at, q, step, side, edge: ti.template(), vis: ti.template()):
     elif (f ^ g) >> 16 == 0 and not level(f, g):
         w = nearness(vis, at)
         gap = 3.0 * w - 2.0 * nearness(vis, at - step) - nearness(vis, q + step)
-        out = ti.abs(gap) < 0.006 * w * w and not bends(e, g, 0.98)
+        out = ti.abs(gap) < PLANE * w * w and not bends(e, g, 0.98)
     return out
 
 

@@ -65,6 +65,8 @@ class Passes:
         self._rows, self._upload = rows, backend.upload
         self._match_runs = vectorised(rows.match_runs) if backend.on_host else None
         self.SHADE: int = paint.SHADE
+        #: Whether what is drawn in a pixel may go by others up to a run away.
+        self.strokes_look_around = style.hatch
         self.shading = shading.shading_kernels(style)
         self._ink = ink.ink_kernels(style)
         self._ink_runs = vectorised(self._ink.runs) if backend.on_host else None

@@ -182,8 +182,8 @@ def hatch_rows(
             )
             spacing = ti.max(SPACING * height, 3.2)
             apart = spacing * step.norm()  # metres between strokes a metre away
-            room = ti.cast(NARROW * spacing + 0.5, ti.i32)
-            reach = ti.max(ti.cast(HALO * height + 0.5, ti.i32), 2)
+            room = ti.min(ti.cast(NARROW * spacing + 0.5, ti.i32), RUN)
+            reach = bounded(ti.cast(HALO * height + 0.5, ti.i32), 2, RUN)
             last = -2
             plane, ga, gb = vec3(0), vec3(0), vec3(0)
             offset, xa, xb = 1.0, 0.0, 0.0

@@ -134,7 +134,7 @@ def test_people_afar_have_a_wash_and_people_near_have_strokes() -> None:
     assert 90 < afar[inner].mean() < 220, "grey"
     near, there = of_figure(0.5)
     inner = cv2.erode(there.astype(np.uint8), np.ones((7, 7))) > 0
-    assert np.ptp(near[inner]) > 150, "ink and paper"
+    assert np.ptp(near[inner]) > 100, "strokes over a pale wash"
 
 
 def test_strokes_of_a_set_end_before_people_and_are_paler_than_theirs() -> None:

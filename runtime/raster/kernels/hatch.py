@@ -27,9 +27,10 @@ SET = 0.7  # of their ink that strokes of a set have: black is for people
 NARROW = 1.6  # times the way between strokes: what has less room has none
 FLAT = 0.28  # ink that is there instead, as much as strokes have in the middle
 HALO = 0.0085  # of the picture's height around people, where the set behind them has no strokes
-#: Metres between strokes from which on people begin to have a wash of grey instead, and have nothing else;
-#: how dark their shadows are in it.
+#: Metres between strokes from which on, by and by, people have a wash of grey instead, which is read at a
+#: glance where strokes are not; and how dark their shadows are in it.
 AFAR, SHADOW = (0.008, 0.015), 0.3
+UNDER, OVER = 0.5, 0.75  # near by: share of the wash, and of the ink of the strokes over it
 SKY, BRIGHT = 0.9, 165.0  # how dark strokes make a sky, and the luma from which on it stays white
 
 
@@ -216,11 +217,9 @@ def hatch_rows(
                         # sets are quiet
                         dark = 0.85 * (1.0 - tone / (1.0 + DEEPER * gloom)) - 0.05
                     else:
-                        # people: shadows whatever the colour, and what is dark itself
-                        shadow = 0.62 * (1.0 - tone / own[t, 0])
-                        dark = (shadow + own[t, 1]) * (1.0 - OPENER * gloom)
-                        shadow = SHADOW * eased(shadow, LIGHTEST[0], LIGHTEST[1])
-                        wash = own[t, 2] + (1.0 - own[t, 2]) * shadow
+                        # people: shadows whatever the colour, and what is dark itself, over a wash
+                        dark = (0.62 * (1.0 - tone / own[t, 0]) + own[t, 1]) * (1.0 - OPENER * gloom)
+                        wash = own[t, 2]
                         afar = eased(apart / nearness(vis, i), AFAR[0], AFAR[1])
                     ink = 0.0
                     if not moves and dark > LIGHTEST[0]:  # noqa: SIM102
@@ -269,4 +268,9 @@ def hatch_rows(
                             ink = ti.max(ink, eased(dark, 0.6, 0.76))
                         if not moves and ink > LEAST:
                             ink *= SET * (1.0 - haloed(i, x, line % height, width, height, reach, vis, own))
-                    picture[i] = inked(ink + (wash - ink) * afar)
+                    if moves:
+                        shadow = SHADOW * eased(dark - own[t, 1], LIGHTEST[0], LIGHTEST[1])
+                        wash *= afar + (1.0 - afar) * UNDER
+                        ink *= OVER
+                        ink = wash + (1.0 - wash) * (ink + (shadow - ink) * afar)
+                    picture[i] = inked(ink)

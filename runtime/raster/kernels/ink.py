@@ -13,7 +13,7 @@ import taichi as ti
 
 from ..types import Style
 from . import crew
-from .borders import TOUCH, find_borders, quiet, slope
+from .borders import find_borders, quiet, slope, touch
 from .gather import fv, iv
 from .geometry import f1, f2, i1, nearness, u32s, u64s, vec3
 from .paint import INK, NOTHING, decode, encode, unpack_normal
@@ -45,11 +45,11 @@ def bends(e, f, cosine):
 
 
 @ti.func
-def line_weight(e, f, w, w_f, w_back, first_moving, slant, owner: ti.template()):
+def line_weight(e, f, w, w_f, w_back, touching, first_moving, owner: ti.template()):
     """How strongly the border from a pixel (e, 1/z = w) to a neighbour (f, w_f) is inked on the pixel's side.
 
-    w_back: 1/z behind the pixel, from which its surface is extended to the neighbour; slant: of
-    ``borders.slope``
+    w_back: 1/z behind the pixel, from which its surface is extended to the neighbour; touching: whether the
+    two touch where they are of two surfaces
     """
     out = 0.0
     s = ti.cast(e >> 16, ti.i32)
@@ -63,7 +63,6 @@ def line_weight(e, f, w, w_f, w_back, first_moving, slant, owner: ti.template())
             out = 1.0 if moves else 0.6
         else:
             # the nearer side; where the two touch, always the same one, or the line would jump across
-            touching = ti.abs(w - w_f) < TOUCH * w * w + slant
             if (touching and s > s_f) or (not touching and w > w_f):
                 if owner[s] != owner[s_f]:
                     out = 1.0 if moves else (0.45 if touching else 0.6)
@@ -89,7 +88,7 @@ def apart(e, f):
 
 @ti.func
 def of_sliver(at, q, step, side, edge: ti.template(), vis: ti.template()):
-    """Whether the line between two pixels of the set is one of a facet a pixel wide.
+    """Whether the line between a pixel of the set and another is one of a facet a pixel wide.
 
     One sample a pixel meets such a facet by chance, and its line would come and go as dashes: a crease needs
     two pixels on either side; and past a step of some millimetres what lies in one plane is without one.
@@ -192,10 +191,18 @@ def ink_kernels(style: Style) -> SimpleNamespace:
                 w_q = nearness(vis, q)
                 w_back = nearness(vis, back)
                 f = edge[q]
+                touching = False
+                if (e ^ f) >> 16 != 0 and f != ti.u32(NOTHING):
+                    before, after = 0.0, 0.0
+                    if behind > 0 and (e ^ edge[back]) >> 16 == 0:
+                        before = w - w_back
+                    if ahead > 1 and (f ^ edge[q + step]) >> 16 == 0:
+                        after = nearness(vis, q + step) - w_q
+                    touching = touch(before, w, w_q, after, slant)
                 if behind == 0 or ((e ^ edge[back]) >> 16) != 0:
                     w_back = w - (w_q - w) if (e ^ f) >> 16 == 0 else w
                 if e != f or ti.abs(2 * w - w_back - w_q) > 0.03 * w * w:
-                    strong = line_weight(e, f, w, w_q, w_back, first_moving, slant, owner)
+                    strong = line_weight(e, f, w, w_q, w_back, touching, first_moving, owner)
                     inside = 1 < x < width - 2 and 1 < y < height - 2
                     if strong > ink and inside and not moves and f != ti.u32(NOTHING):  # noqa: SIM102
                         if of_sliver(at, q, step, width if k < 2 else 1, edge, vis):
@@ -205,8 +212,13 @@ def ink_kernels(style: Style) -> SimpleNamespace:
                     g = edge[q + step]
                     if (e ^ g) >> 16 != 0:
                         share = ti.min(broad - 1.0, 1.0)
-                        far = nearness(vis, q + step)
-                        ink = ti.max(ink, share * line_weight(f, g, w_q, far, w, first_moving, slant, owner))
+                        far, after = nearness(vis, q + step), 0.0
+                        if ahead > 2 and (g ^ edge[q + 2 * step]) >> 16 == 0:
+                            after = nearness(vis, q + 2 * step) - far
+                        touching = touch(w_q - w, w_q, far, after, slant)
+                        ink = ti.max(
+                            ink, share * line_weight(f, g, w_q, far, w, touching, first_moving, owner)
+                        )
         if ink > 0:
             c = decode(picture[at], linear)
             if ti.static(hatch):

@@ -152,8 +152,8 @@ class EmptySets:
             *self._crew(bands),
         )
         runs = size[0] // run
-        if self._passes.strokes_look_around:
-            self._widen(layer.level, block, views, size)
+        if around := self._passes.looks_around(size[1]):
+            self._widen(around, layer.level, block, views, size)
         copied = self._buffer("copied", (views * runs * size[1],), np.int32)
         crew = self._crew(bands)
         self._reuse.settle(block, int(whole), views, *size, layer.level, copied, *crew)
@@ -179,12 +179,13 @@ class EmptySets:
             *self._crew(views * size[1]),
         )
 
-    def _widen(self, level: Any, block: Any, views: int, size: tuple[int, int]) -> None:
-        """Draw the tiles around those that are drawn anew as well: what is in them may go by these."""
+    def _widen(self, around: int, level: Any, block: Any, views: int, size: tuple[int, int]) -> None:
+        """Draw what is so many pixels from tiles that are drawn anew as well, as it may go by these."""
         band, runs = self._reuse.BAND, size[0] // self._passes.run
         assert band == self._passes.run  # a block is a tile
         rows = level[: views * size[1] * runs].reshape(views, size[1], runs)
         tiles = rows[:, ::band] == self._passes.SHADE
-        near = maximum_filter(tiles, (1, 3, 3))
+        side = 2 * -(-around // band) + 1
+        near = maximum_filter(tiles, (1, side, side))
         rows[np.repeat(near & ~tiles, band, axis=1)[:, : size[1]]] = self._passes.SHADE
         block[: near.size] = near.reshape(-1)

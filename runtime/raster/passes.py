@@ -65,8 +65,6 @@ class Passes:
         self._rows, self._upload = rows, backend.upload
         self._match_runs = vectorised(rows.match_runs) if backend.on_host else None
         self.SHADE: int = paint.SHADE
-        #: Whether what is drawn in a pixel may go by others up to a run away.
-        self.strokes_look_around = style.hatch
         self.shading = shading.shading_kernels(style)
         self._ink = ink.ink_kernels(style)
         self._ink_runs = vectorised(self._ink.runs) if backend.on_host else None
@@ -113,7 +111,7 @@ class Passes:
             places = (a["vertices"], a["rest"], moments.position, a["faces"])
             counts = (scene.static_faces, loaded.static_vertices)
             paper = (a["tone"], *loaded.paper, self._lattice)
-            strokes = (layer.vis, layer.edge, layer.level, layer.picture)
+            strokes = (layer.vis, layer.edge, layer.solid, layer.level, layer.picture)
             rows = self._backend.crew(views * size[1])
             self._hatch.hatch_rows(view, moment, *places, *counts, *paper, *strokes, *extent, *rows)
         elif not self._style.clay:
@@ -237,6 +235,10 @@ class Passes:
             *size,
             *self._backend.crew(rows[0].shape[0]),
         )
+
+    def looks_around(self, height: int) -> int:
+        """How many pixels away what is shaded in a pixel may go by, in pictures so high."""
+        return int(self._hatch.looks_around(height)) if self._style.hatch else 0
 
     def draw_lines(self, loaded: Loaded, layer: Layer, view: Any, views: int, size: tuple[int, int]) -> None:
         """Ink, and marks where something ends."""

@@ -10,7 +10,7 @@ import pytest
 from numpy.typing import NDArray
 from raster_scenes import LIGHT, box, looking, room, scene, sphere, still
 
-from runtime.mesh import Mesh
+from runtime.mesh import Mesh, join
 from runtime.raster import passes
 from runtime.raster.adjacency import beside
 from runtime.raster.film import to_linear
@@ -143,21 +143,44 @@ def by_both(monkeypatch: pytest.MonkeyPatch) -> list[tuple[NDArray[Any], NDArray
     return seen
 
 
-def test_where_wall_and_ceiling_meet_is_one_line() -> None:
-    """Seen at a slant, where the ceiling ends inside the wall, it is as dark everywhere, and straight."""
-    pale = (0.8, 0.8, 0.8)
-    corner = [box((-8, -3, 2.4), (8, 8.03, 2.5), pale), box((-8, 8, -1), (8, 8.3, 2.7), pale, part=1)]
+@pytest.mark.parametrize("up", [1, -1], ids=["ceiling", "floor"])
+def test_where_a_wall_meets_what_ends_within_it_is_one_line(up: int) -> None:
+    """Seen at a slant, it is as dark everywhere, and straight."""
+    pale, heights = (0.8, 0.8, 0.8), sorted((0.0, 0.1 * up))
+    level = box((-8, -3, heights[0]), (8, 8.03, heights[1]), pale)
+    wall = box((-8, 8, -3), (8, 8.3, 3), pale, part=1)
     drawer = Renderer("cpu", Style("lines", tones=0, shadows=False, occlusion=False))
-    for things in (corner, corner[::-1]):
+    for things in ([level, wall], [wall, level]):
         drawer.load(scene(things, [], light=EVEN))
-        views = looking([(0.0, -0.5, 1.4)], [(0.6, 8.0, 2.3)])
-        strip = drawer.render(still(1), views, (640, 360)).color[0, 158:188, 40:600, 1].astype(float)
+        views = looking([(0.0, -0.5, -1.0 * up)], [(0.6, 8.0, -0.1 * up)])
+        picture = drawer.render(still(1), views, (640, 360)).color[0, ::up, 40:600, 1].astype(float)
+        strip = picture[158:188]
         surface = strip[0] + (strip[-1] - strip[0]) * np.linspace(0, 1, 30)[:, None]
         line = np.clip(surface - strip - 1.0, 0.0, None)
         dark = line.sum(axis=0)
         at, across = (line * np.arange(30)[:, None]).sum(axis=0) / dark, np.arange(560)
         assert dark.min() > 0.6 * dark.max()
         assert np.abs(at - np.polyval(np.polyfit(across, at, 1), across)).max() < 0.2
+
+
+@pytest.mark.parametrize("size", [(640, 360), (224, 126)])
+def test_an_outline_stays_where_it_is_as_one_goes_away(size: tuple[int, int]) -> None:
+    """Of an arm before its body it is on the arm, as near as it may be, and never gone."""
+    pale = (0.8, 0.8, 0.8)
+    arm = box((-0.5, -0.14, 0), (0.0, -0.12, 2), pale, part=0)
+    body = box((-2, 0, 0), (2, 0.2, 2), pale, part=1)
+    drawer = Renderer("cpu", Style("lines", tones=0, shadows=False, occlusion=False))
+    drawer.load(scene([box((-9, 20, -9), (9, 21, 9), pale)], [join([arm, body])], light=EVEN))
+    away = np.linspace(3.0, 12.0, 60)
+    views = looking([(0.0, -z, 1.0) for z in away], [(0.0, 0.0, 1.0)] * len(away))
+    rows = drawer.render(still(1), replace(views, moment=np.zeros(60, np.int32)), size).color[
+        :, size[1] // 2, :, 1
+    ]
+    middle = rows[:, size[0] // 2 - 6 : size[0] // 2 + 7].astype(float)
+    dark = middle.max(axis=1, keepdims=True) - middle
+    assert dark.max(axis=1).min() > 0.7 * dark.max(axis=1).max()
+    at = (dark * np.arange(-6, 7)).sum(axis=1) / dark.sum(axis=1)
+    assert -2.5 < at.min() <= at.max() < -0.5
 
 
 def test_a_step_a_pixel_wide_is_not_dashed() -> None:

@@ -112,9 +112,6 @@ def reasons(shooting: Shooting, measured: Measured, subject: Subject) -> NDArray
     v, track = measured.values, shooting.track
     paper = shooting.rig == "paper"
     own = length(track.position - subject.landmarks["eyes"][None]).min(axis=1)
-    within = np.zeros(len(own), bool)
-    for one in subject.own:
-        within |= own_room(one, track.position) < _NEAR_BODY
     moving = np.array([bool(families(m) & _RESIZE) for m in shooting.movements])
     whips = np.array(["whip-pan" in families(m) for m in shooting.movements])
     moving |= shooting.view == "pov"  # its owner goes nearer, or farther
@@ -125,9 +122,7 @@ def reasons(shooting: Shooting, measured: Measured, subject: Subject) -> NDArray
     walked = float(np.linalg.norm(np.diff(subject.position, axis=0), axis=1).sum())
     asked = {
         "in_wall": measured.shown < _NEAR_WALL * _arm(shooting),
-        "in_person": (measured.people < _NEAR_PERSON)
-        | ((own < _NEAR_FACE) & (subject.kind == "person"))
-        | within,
+        "in_person": (measured.people < _NEAR_PERSON) | ((own < _NEAR_FACE) & (subject.kind == "person")),
         "subject_out_of_frame": v["in_frame"] < np.where(keeps, 0.85, 0.5 if walked > 0.5 else 0.7),
         "subject_hidden": (v["visibility"] < 0.6)
         | (v["ends_visible"] < 0.4)
@@ -141,7 +136,12 @@ def reasons(shooting: Shooting, measured: Measured, subject: Subject) -> NDArray
         "too_fast": (v["speed"] > _FASTEST) | ((v["angular_speed"] > _TURNS) & ~whips),
         "missing_backdrop": v["backdrop_gap"] > 0.12,
     }
-    return _first(asked, len(shooting.movements))
+    out = _first(asked, len(shooting.movements))
+    left = np.flatnonzero(OFFERED[out])  # it takes longer: asked of those that may be offered
+    for one in subject.own:
+        within = own_room(one, track.position[left]) < _NEAR_BODY
+        out[left[within]] = REASONS.index("in_person")
+    return out
 
 
 def _does_not_move(shooting: Shooting, v: Mapping[str, NDArray[np.float64]]) -> NDArray[np.bool_]:

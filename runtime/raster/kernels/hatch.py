@@ -15,7 +15,7 @@ from .geometry import bounded, f1, f2, f3, i1, i2, item3, nearness, part3, row3,
 from .paint import RUN, SHADE
 from .pattern import value_noise
 
-SPACING = 0.0085  # of the picture's height
+SPACING, CLOSEST = 0.0085, 3.2  # of the picture's height; pixels, at least
 FIRST, SECOND = (0.61, 0.45, 0.65), (-0.52, 0.66, 0.55)  # across the strokes of the two layers
 #: From one knot to the next of the spline that strokes are seen through: pixels, at most; of their spacing.
 SOFT, SOFTER = 1.25, 0.2
@@ -24,8 +24,8 @@ DEEPER = 0.4  # how much lighter a set has to be to stay white where it is as gl
 OPENER = 0.4  # and how much of their ink people lose there, so that they stand out
 LEAST = 0.03  # ink that is seen
 SET = 0.7  # of their ink that strokes of a set have: black is for people
-NARROW = 1.6  # times the way between strokes: what has less room has none
-FLAT = 0.28  # ink that is there instead, as much as strokes have in the middle
+NARROW = 1.6  # times the way between strokes: what has less room begins to lose them, up to a quarter less
+FLAT = 0.4  # ink that is there instead, about as much as strokes have in the middle
 HALO = 0.0085  # of the picture's height around people, where the set behind them has no strokes
 #: Metres between strokes from which on, by and by, people have a wash of grey instead, which is read at a
 #: glance where strokes are not; and how dark their shadows are in it.
@@ -97,23 +97,45 @@ def inked(ink):
     return r8 | (g8 << 8) | (b8 << 16) | (((r8 * 5 + g8 * 9 + b8 * 2) >> 4) << 24)
 
 
+def looks_around(height: int) -> int:
+    """How many pixels away what is drawn in a pixel may go by, in pictures so high."""
+    return int(max(NARROW * max(SPACING * height, CLOSEST), HALO * height)) + 2
+
+
 @ti.func
-def narrow(i, x, y, width, height, room, edge: ti.template()):
-    """Whether a surface is less than ``room`` pixels wide about one of its pixels: there is no place for
-    strokes on it, and bits of them would come and go."""
+def extent(i, place, size, step, room, edge: ti.template()):
+    """Over how many pixels in a row the surface goes on that is seen in one of them, up to ``room``.
+
+    place: of the pixel in its row of ``size``; step: from pixel to pixel of it in memory
+    """
     s = edge[i] >> 16
-    out = False
-    for k in range(6):
-        # looked for to either side, ``room`` pixels in all: across, then up and down
-        one = room * (k % 3 + 1) // 4
-        step, place, size = (
-            ti.select(k < 3, 1, width),
-            ti.select(k < 3, x, y),
-            ti.select(k < 3, width, height),
-        )
-        before, after = ti.min(one, place), ti.min(room - one, size - 1 - place)
-        if not out and edge[i - before * step] >> 16 != s:
-            out = edge[i + after * step] >> 16 != s
+    half = (room + 1) // 2
+    out = room
+    if (
+        place < half
+        or place >= size - half
+        or edge[i - half * step] >> 16 != s
+        or edge[i + half * step] >> 16 != s
+    ):
+        out = 1
+        for way in range(2):
+            k, most = 1, ti.select(way == 0, place, size - 1 - place)
+            one = ti.select(way == 0, -step, step)
+            while k <= most and out < room and edge[i + k * one] >> 16 == s:
+                k += 1
+                out += 1
+    return out
+
+
+@ti.func
+def alone_here(line, y, run, runs, height, reach, solid: ti.template()):
+    """Whether nobody is within ``reach`` of a run of pixels, as one triangle of the set fills each around."""
+    out = True
+    for j in range(-2, 3):
+        v = y + j * ((reach + 1) // 2)
+        if 0 <= v < height:
+            for r in range(ti.max(run - 1, 0), ti.min(run + 2, runs)):
+                out = out and solid[(line - y + v) * runs + r] != 0
     return out
 
 
@@ -121,12 +143,12 @@ def narrow(i, x, y, width, height, room, edge: ti.template()):
 def haloed(i, x, y, width, height, reach, vis: ti.template(), own: ti.template()):
     """How near a place of the set is to somebody's outline before it, 0..1.
 
-    i, x, y: its pixel; reach: pixels, looked for in eight ways, and half as far where anything is found
+    i, x, y: its pixel; reach: pixels, looked for in eight ways, and half as far, for what is narrow
     """
     here = nearness(vis, i)
     found = 0
     for k in range(18):
-        if k == 9 and found == 0:
+        if found > 1:
             break
         far = ti.select(k < 9, reach, (reach + 1) // 2)
         dx, dy = far * (k % 3 - 1), far * (k // 3 % 3 - 1)
@@ -155,6 +177,7 @@ def hatch_rows(
     lattice: f1,
     vis: u64s,
     edge: u32s,
+    solid: i1,
     todo: i1,
     picture: u32s,
     views: ti.i32,
@@ -166,8 +189,9 @@ def hatch_rows(
 ):
     """Turn a shaded picture into strokes, in place.
 
-    own [F, 2]: how light each triangle is in all of the light, 1 for white, and the ink of its colour, less
-        than 0 of what belongs to the set;
+    own [F, 3]: how light each triangle is in all of the light, 1 for white, the ink of its colour in strokes,
+        less than 0 of what belongs to the set, and the same in a wash;
+    edge: surfaces in its upper half; solid: the triangle + 1 of the set that fills each RUN alone, or not 0;
     level: luma that stays white; gloom: how far from the light of day the set is, 0..1; todo: levels of runs
     """
     for slot in range(slots):
@@ -181,18 +205,22 @@ def hatch_rows(
             first = (
                 part3(view, n, 9) + down * (line % height + 0.5 - view[n, 15]) + step * (0.5 - view[n, 14])
             )
-            spacing = ti.max(SPACING * height, 3.2)
+            spacing = ti.max(SPACING * height, CLOSEST)
             apart = spacing * step.norm()  # metres between strokes a metre away
-            room = ti.min(ti.cast(NARROW * spacing + 0.5, ti.i32), RUN)
-            reach = bounded(ti.cast(HALO * height + 0.5, ti.i32), 2, RUN)
+            room = ti.cast(NARROW * spacing + 0.5, ti.i32)
+            reach = ti.max(ti.cast(HALO * height + 0.5, ti.i32), 2)
+            y, runs = line % height, (width + RUN - 1) // RUN
+            nobody = False  # near the run at hand
             last = -2
             plane, ga, gb = vec3(0), vec3(0), vec3(0)
             offset, xa, xb = 1.0, 0.0, 0.0
             for x in range(width):
                 i = line * width + x
                 t = triangle(vis, i)
-                if todo[line * ((width + RUN - 1) // RUN) + x // RUN] < SHADE:
+                if todo[line * runs + x // RUN] < SHADE:
                     continue
+                if x % RUN == 0:
+                    nobody = alone_here(line, y, x // RUN, runs, height, reach, solid)
                 tone = ti.cast(picture[i] >> 24, ti.f32)
                 ray = first + step * ti.cast(x, ti.f32)
                 if t < 0:
@@ -221,11 +249,17 @@ def hatch_rows(
                         dark = (0.62 * (1.0 - tone / own[t, 0]) + own[t, 1]) * (1.0 - OPENER * gloom)
                         wash = own[t, 2]
                         afar = eased(apart / nearness(vis, i), AFAR[0], AFAR[1])
+                    if dark <= LIGHTEST[0] and not moves:
+                        picture[i] = inked(0.0)
+                        continue
                     ink = 0.0
-                    if not moves and dark > LIGHTEST[0]:  # noqa: SIM102
-                        if narrow(i, x, line % height, width, height, room, edge):
-                            ink = FLAT * eased(dark, LIGHTEST[0], LIGHTEST[1])
-                    if dark > LIGHTEST[0] and afar < 1.0 and ink == 0.0:
+                    flat = 0.0  # share of a flat grey, where there is no room for strokes
+                    if not moves:
+                        wide = extent(i, x, width, 1, room, edge)
+                        if wide > 1:
+                            wide = ti.min(wide, extent(i, y, height, width, room, edge))
+                        flat = bounded(4.0 * (1.0 - ti.cast(wide, ti.f32) / ti.cast(room, ti.f32)), 0.0, 1.0)
+                    if dark > LIGHTEST[0] and afar < 1.0 and flat < 1.0:
                         if t != last:
                             last = t
                             a, b, c = faces[t, 0], faces[t, 1], faces[t, 2]
@@ -266,9 +300,12 @@ def hatch_rows(
                             other = strokes(place_b, place_a, across_b, spacing, half, lattice)
                             ink = ti.max(ink, other * eased(dark, 0.46, 0.58))
                             ink = ti.max(ink, eased(dark, 0.6, 0.76))
-                        if not moves and ink > LEAST:
-                            ink *= SET * (1.0 - haloed(i, x, line % height, width, height, reach, vis, own))
-                    if moves:
+                    ink += (FLAT * eased(dark, LIGHTEST[0], LIGHTEST[1]) - ink) * flat
+                    if not moves:
+                        ink *= SET
+                        if ink > LEAST and not nobody:
+                            ink *= 1.0 - haloed(i, x, y, width, height, reach, vis, own)
+                    else:
                         shadow = SHADOW * eased(dark - own[t, 1], LIGHTEST[0], LIGHTEST[1])
                         wash *= afar + (1.0 - afar) * UNDER
                         ink *= OVER

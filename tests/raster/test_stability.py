@@ -16,9 +16,9 @@ from vdsl.stage.assemble import palettes
 NOBODY = np.zeros(0, np.bool_)
 
 
-# strokes of hatching are near black and two pixels wide: carried over by half pixels they blur, and
+# strokes of hatching are dark and two pixels wide: carried over by half pixels they blur, and
 # that counts as change
-@pytest.mark.parametrize(("style", "most"), [("board", 0.001), ("clay", 0.005), ("ink", 0.015)])
+@pytest.mark.parametrize(("style", "most"), [("board", 0.001), ("clay", 0.001), ("ink", 0.008)])
 def test_a_slow_pan_does_not_crawl(style: str, most: float) -> None:
     drawer = Renderer("cpu", STYLES[style])
     drawer.load(room())
@@ -29,7 +29,7 @@ def test_a_slow_pan_does_not_crawl(style: str, most: float) -> None:
 
 
 # furniture has edges thinner than a pixel, which one sample a pixel meets by chance
-@pytest.mark.parametrize(("style", "most"), [("board", 0.003), ("ink", 0.018)])
+@pytest.mark.parametrize(("style", "most"), [("board", 0.003), ("ink", 0.012)])
 def test_a_furnished_set_stays_as_steady_as_it_is(style: str, most: float) -> None:
     staged = stage_script('storyboard "set"\nscene s = cafe at day\n\n/ (static wide)\n', "cafe").staged
     camera = eyes_camera(entrances(staged.world, 1), (1280, 720))

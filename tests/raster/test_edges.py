@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 from numpy.typing import NDArray
-from raster_scenes import LIGHT, box, looking, room, scene, sphere, still
+from raster_scenes import LIGHT, box, from_lists, looking, room, scene, sphere, still
 
 from runtime.mesh import Mesh, join
 from runtime.raster import passes
@@ -181,6 +181,25 @@ def test_an_outline_stays_where_it_is_as_one_goes_away(size: tuple[int, int]) ->
     assert dark.max(axis=1).min() > 0.7 * dark.max(axis=1).max()
     at = (dark * np.arange(-6, 7)).sum(axis=1) / dark.sum(axis=1)
     assert -2.5 < at.min() <= at.max() < -0.5
+
+
+def test_a_speck_of_skin_has_no_lines_around_it() -> None:
+    """A triangle that comes through another in a single pixel, turned elsewhere, makes no cross of ink."""
+    skin, light = (0.8, 0.6, 0.5), replace(EVEN, sky=(0.9, 0.9, 0.9))
+    ball = sphere((0, 0, 0), (0.5, 0.5, 0.5), skin, rings=48)
+    speck = from_lists(
+        [(-0.004, -0.502, -0.004), (0.008, -0.502, -0.004), (-0.004, -0.502, 0.008)],
+        [(0, 1, 2)],
+        [(1.0, 0.2, 0.0)] * 3,
+        skin,
+    )
+    drawer, pictures = Renderer("cpu", Style("lines", tones=0, shadows=False, occlusion=False)), []
+    for thing in (ball, join([ball, speck])):
+        drawer.load(scene([box((-9, 5, -9), (9, 6, 9))], [thing], light=light))
+        views = looking([(0.006, -3.0, 0.006)], [(0.006, 0.0, 0.006)])
+        pictures.append(drawer.render(still(1), views, (224, 126)).color[0].astype(int))
+    changed = np.abs(pictures[0] - pictures[1]).max(axis=-1) > 12
+    assert changed.sum() <= 1
 
 
 def test_a_step_a_pixel_wide_is_not_dashed() -> None:

@@ -21,6 +21,7 @@ from .paint import RUN as BLOCK
 
 i32s = ti.types.ndarray(ti.i32, ndim=1)
 EVERY = (1 << BLOCK) - 1
+CREASE = 0.45  # how strongly a crease of what moves is inked
 PLANE = 0.003  # metres by which two faces in one plane may be apart
 
 
@@ -76,7 +77,7 @@ def line_weight(e, f, w, w_f, w_back, touching, first_moving, owner: ti.template
     elif gap > allowed and w > w_f:
         out = 0.8 if moves else 0.45
     elif gap > -allowed and bends(e, f, 0.35 if moves else 0.75):
-        out = 0.45 if moves else 0.3
+        out = CREASE if moves else 0.3
     return out
 
 
@@ -110,6 +111,14 @@ def of_sliver(at, q, step, side, edge: ti.template(), vis: ti.template()):
         gap = 3.0 * w - 2.0 * nearness(vis, at - step) - nearness(vis, q + step)
         out = ti.abs(gap) < PLANE * w * w and not bends(e, g, 0.98)
     return out
+
+
+@ti.func
+def island(at, width, edge: ti.template()):
+    """Whether a pixel shows a facet that none of its neighbours shows; all around it there are pixels."""
+    e = edge[at]
+    out = apart(e, edge[at - 1]) and apart(e, edge[at + 1])
+    return out and apart(e, edge[at - width]) and apart(e, edge[at + width])
 
 
 @ti.func
@@ -204,9 +213,14 @@ def ink_kernels(style: Style) -> SimpleNamespace:
                 if e != f or ti.abs(2 * w - w_back - w_q) > 0.03 * w * w:
                     strong = line_weight(e, f, w, w_q, w_back, touching, first_moving, owner)
                     inside = 1 < x < width - 2 and 1 < y < height - 2
-                    if strong > ink and inside and not moves and f != ti.u32(NOTHING):  # noqa: SIM102
-                        if of_sliver(at, q, step, width if k < 2 else 1, edge, vis):
-                            strong = 0.0
+                    if strong > ink and inside and f != ti.u32(NOTHING):
+                        if not moves:
+                            if of_sliver(at, q, step, width if k < 2 else 1, edge, vis):
+                                strong = 0.0
+                        elif strong <= CREASE and (e ^ f) >> 16 == 0:  # noqa: SIM102
+                            # of a triangle of skin that comes through another here and there
+                            if island(at, width, edge) or island(q, width, edge):
+                                strong = 0.0
                     ink = ti.max(ink, strong)
                 if moves and broad > 1.0 and ink < 0.9 and ahead > 1 and (e ^ f) >> 16 == 0:
                     g = edge[q + step]

@@ -13,6 +13,7 @@ from vdsl.library import Catalog
 from vdsl.pipeline.eyes import Eye
 from vdsl.pipeline.gallery import LOOKS, TIMES, Gallery, index, nearer
 from vdsl.pipeline.gallery_cases import CASES, Case
+from vdsl.pipeline.preview import at_rest
 from vdsl.pipeline.trial import stage_script
 
 FOLDER = Path(__file__).parents[2] / "docs" / "gallery"
@@ -57,3 +58,12 @@ def test_an_eye_comes_near_enough_to_a_person() -> None:
     assert near.position[2] == far.position[2]
     close = Eye((11.0, 9.0, 1.6), far.aim, 20.0)
     assert nearer(close, person, world) == close
+
+
+def test_people_in_a_set_turn_a_face_to_the_eye(gallery: Gallery) -> None:
+    for name in ("house", "hospital", "cafe"):
+        act, eye = gallery._peopled(name, "day")
+        for who, acted in at_rest(act).performances.items():
+            across, along = np.array(eye.position[:2]) - acted.position[0, :2]
+            aside = math.remainder(float(acted.heading[0]) - math.atan2(along, across), math.tau)
+            assert abs(aside) < math.radians(75), (name, who)

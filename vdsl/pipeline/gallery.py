@@ -50,6 +50,8 @@ _POSTER_CAST = ("detective", "chef", "nurse", "old_woman", "astronaut", "girl", 
 _POSTER_COLUMNS, _GAP, _PAPER = 3, 6, (246, 243, 235)
 _NEAR = 6.0  # metres from the eye to the first person, at most
 _WHOLE = 3.4  # metres; who is nearer does not fit into the picture
+_REACHED = 1.0  # metres from somebody to what they may look at, at least
+_ASIDE = math.radians(35)  # from the eye to where they look
 _SMALL = 15.0  # metres; who is farther off is a speck
 #: How far beside the first the second stands at least, not to hide behind the other, and at most.
 _CLEAR, _BESIDE = math.radians(7), math.radians(40)
@@ -152,7 +154,7 @@ class Gallery:
         eye = nearer(eye, room.spots[0].position if room.spots else eye.aim, bare.staged.world)
         spots = _apart(eye, room)
         said = [
-            f"{who} at {'.'.join((*room.path, spot.name))}\n"
+            f"{who} at {'.'.join((*room.path, spot.name))}{_facing(eye, spot, bare.staged.world)}\n"
             for who, spot in zip(("anna", "ben"), spots, strict=False)
         ]
         return (stage_script(head + "".join(said) + line, name) if said else bare), eye
@@ -180,6 +182,21 @@ def _apart(eye: Eye, room: WorldObject) -> list[Spot]:
         for angle, far in zip(beside, away, strict=True)
     ]
     return [room.spots[0], room.spots[int(np.argmax(seen))]] if max(seen) > 0 else [room.spots[0]]
+
+
+def _facing(eye: Eye, spot: Spot, world: World) -> str:
+    """Words by which who stands on a spot turns a little beside the eye, to a thing that is there: a face is
+    seen, and it looks at something. Nothing where there is none such."""
+    x, y = spot.position[:2]
+    to_eye = math.atan2(eye.position[1] - y, eye.position[0] - x)
+    turns = {}
+    for item in world.objects:
+        across, along = (item.low[0] + item.high[0]) / 2 - x, (item.low[1] + item.high[1]) / 2 - y
+        if item.kind not in ("room", "area", "part", "stairs") and math.hypot(across, along) > _REACHED:
+            turn = abs(math.remainder(math.atan2(along, across) - to_eye, math.tau))
+            turns[".".join(item.path)] = abs(turn - _ASIDE)
+    best = min(turns, key=lambda path: turns[path], default="")
+    return f" facing {best}" if best and turns[best] < _ASIDE else ""
 
 
 def nearer(eye: Eye, person: tuple[float, float, float], world: World) -> Eye:

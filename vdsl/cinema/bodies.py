@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from .framing import Array
 from .subject import Subject, marks_at
 from .takes import Bools
-from .vectors import clamped, dot, length
+from .vectors import dot, length
 
 #: Foot and crown [T, 3], and radius in metres.
 Pillar = tuple[Array, Array, float]
@@ -26,9 +26,8 @@ _SKULL, _HAT = 0.14, 0.04
 #: Share of the way from the waist to the thighs at which the hips are; radius of a trunk that is in the way
 #: of the own head, and how far before that it has to be: metres.
 _HIPS, _BACK, _APART = 0.35, 0.15, 0.2
-#: Radii of what a camera may not enter: trunk, head from chin to crown, and arms in wide sleeves; and how far
-#: from somebody's eyes it has to be to reach none of these: metres.
-_CHEST, _HEAD, _SLEEVE, _BODY = 0.17, 0.12, 0.09, 1.5
+#: Radii of what a camera may not enter: trunk, head from chin to crown, and arms in wide sleeves: metres.
+_CHEST, _HEAD, _SLEEVE = 0.17, 0.12, 0.09
 _ALONG = (0.0, 0.5, 1.0)  # of the way from waist to chest
 
 
@@ -58,26 +57,16 @@ def behind_own_back(one: Subject, at: NDArray[np.int64], camera: Array) -> Bools
     return np.asarray(hides.any(axis=-1))
 
 
-def own_room(one: Subject, camera: Array) -> Array:
-    """Least distance [P] from cameras [P, T, 3] to somebody's trunk, head and arms as they bend and reach,
-    negative inside; inf for those that are far from them."""
-    best, marks = np.full(len(camera), np.inf), one.landmarks
-    near = length(camera - marks["eyes"]).min(axis=1) < _BODY
+@lru_cache(maxsize=64)
+def limbs(one: Subject) -> tuple[Pillar, ...]:
+    """Trunk, head and arms of somebody as they bend and reach, from end to end: what no camera may enter."""
+    marks = one.landmarks
     hips = marks["waist"] + _HIPS * (marks["thigh"] - marks["waist"])
-    parts = [(hips, marks["waist"], _CHEST), (marks["waist"], marks["collar"], _CHEST)]
-    parts.append((marks["chin"], marks["crown"], _HEAD))
+    out = [(hips, marks["waist"], _CHEST), (marks["waist"], marks["collar"], _CHEST)]
+    out.append((marks["chin"], marks["crown"], _HEAD))
     if one.arms is not None:
-        parts += [(one.arms[:, k, j], one.arms[:, k, j + 1], _SLEEVE) for k in (0, 1) for j in (0, 1)]
-    if near.any():
-        best[near] = np.min([(_to_line(camera[near], a, b) - r).min(axis=1) for a, b, r in parts], axis=0)
-    return best
-
-
-def _to_line(points: Array, start: Array, end: Array) -> Array:
-    """Distance [P, T] of points [P, T, 3] from lines between [T, 3] and [T, 3]."""
-    axis, beside = end - start, points - start
-    along = clamped(dot(beside, axis) / np.maximum(dot(axis, axis), 1e-9), 0.0, 1.0)
-    return length(beside - along[..., None] * axis)
+        out += [(one.arms[:, k, j], one.arms[:, k, j + 1], _SLEEVE) for k in (0, 1) for j in (0, 1)]
+    return tuple(out)
 
 
 @lru_cache(maxsize=64)

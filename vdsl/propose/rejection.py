@@ -10,10 +10,10 @@ from numpy.typing import NDArray
 from runtime.world import Solids
 
 from ..cinema.angles import lens_height, shows
-from ..cinema.bodies import own_room
+from ..cinema.bodies import limbs
 from ..cinema.measures import Measured
 from ..cinema.moves import FLOOR_CLEARANCE, families
-from ..cinema.space import Nearby, Stage, clearance
+from ..cinema.space import Nearby, Stage, clearance, to_people
 from ..cinema.subject import Subject
 from ..cinema.vectors import dot, length
 from .candidates import Shooting
@@ -138,9 +138,8 @@ def reasons(shooting: Shooting, measured: Measured, subject: Subject) -> NDArray
     }
     out = _first(asked, len(shooting.movements))
     left = np.flatnonzero(OFFERED[out])  # it takes longer: asked of those that may be offered
-    for one in subject.own:
-        within = own_room(one, track.position[left]) < _NEAR_BODY
-        out[left[within]] = REASONS.index("in_person")
+    bodies = [limb for one in subject.own for limb in limbs(one)]
+    out[left[to_people(track.position[left], bodies) < _NEAR_BODY]] = REASONS.index("in_person")
     return out
 
 

@@ -46,6 +46,12 @@ def bends(e, f, cosine):
 
 
 @ti.func
+def slack(w):
+    """By how much 1/z may leave the line of a surface at 1/z = ``w`` before it ends there, before itself."""
+    return (0.035 * w + 0.012) * w
+
+
+@ti.func
 def line_weight(e, f, w, w_f, w_back, touching, first_moving, owner: ti.template()):
     """How strongly the border from a pixel (e, 1/z = w) to a neighbour (f, w_f) is inked on the pixel's side.
 
@@ -58,7 +64,7 @@ def line_weight(e, f, w, w_f, w_back, touching, first_moving, owner: ti.template
     moves = s >= first_moving
     # a gap in metres, where this surface would be if it went on, both times w squared
     gap = 2.0 * w - w_back - w_f
-    allowed = (0.035 * w + 0.012) * w
+    allowed = slack(w)
     if s != s_f:
         if f == ti.u32(NOTHING):
             out = 1.0 if moves else 0.6
@@ -101,7 +107,7 @@ def of_sliver(at, q, step, side, edge: ti.template(), vis: ti.template()):
     out = False
     if (e ^ f) >> 16 == 0:
         w, w_f = nearness(vis, at), nearness(vis, q)
-        ends = 2.0 * w - nearness(vis, at - step) - w_f > (0.035 * w + 0.012) * w and w > w_f
+        ends = 2.0 * w - nearness(vis, at - step) - w_f > slack(w) and w > w_f
         thin |= apart(d, e) or apart(f, g) or (apart(e, edge[at - side]) and apart(e, edge[at + side]))
         out = thin and not ends
     elif thin:
